@@ -1,0 +1,25 @@
+#pragma once
+// The commands of the program. Each throws Error where it cannot do what was asked.
+
+#include "app/options.h"
+
+namespace vkcppm {
+
+/// Renders the scene and writes the EXR, and the PNG and the statistics where asked for. After SIGINT or SIGTERM the
+/// iteration is finished and what there is is written. Throws Error(internal) after writing where the validation layer
+/// was asked for and had something to say.
+void execute(const RenderOptions& options);
+
+/// Prints the measures of core/metrics.h.
+void execute(const CompareOptions& options);
+
+/// Prints what is in the scene and how each material will be treated.
+void execute(const InfoOptions& options);
+
+/// Prints the Vulkan devices, usable or not.
+void execute(const DevicesOptions& options);
+
+/// Prints the text.
+void execute(const TextOptions& options);
+
+}  // namespace vkcppm

@@ -1,0 +1,55 @@
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "app/console.h"
+#include "core/metrics.h"
+#include "io/exr.h"
+
+namespace vkcppm {
+namespace {
+
+/// Measures that are infinite or not a number become null: JSON has neither.
+std::string json_text(const CompareOptions& options, const Comparison& comparison) {
+    const glm::dvec3& ratio = comparison.mean_ratio;
+    nlohmann::ordered_json json;
+    json["image"] = options.image.string();
+    json["reference"] = options.reference.string();
+    json["width"] = comparison.extent.width;
+    json["height"] = comparison.extent.height;
+    json["pixels"] = comparison.pixels;
+    json["image_non_finite"] = comparison.image_non_finite;
+    json["reference_non_finite"] = comparison.reference_non_finite;
+    json["mean_ratio"] = {ratio.r, ratio.g, ratio.b};
+    json["mse"] = comparison.mse;
+    json["relmse"] = comparison.relative_mse;
+    json["relmse_trimmed"] = comparison.trimmed_relative_mse;
+    json["srgb_mse"] = comparison.srgb_mse;
+    json["psnr"] = comparison.psnr;
+    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string plain_text(const Comparison& comparison) {
+    const glm::dvec3& ratio = comparison.mean_ratio;
+    return fmt::format("{:<32}{:.6f} {:.6f} {:.6f}\n", "mean ratio R G B", ratio.r, ratio.g, ratio.b) +
+           fmt::format("{:<32}{:.6g}\n", "MSE", comparison.mse) +
+           fmt::format("{:<32}{:.6g}\n", "relMSE (eps 0.01)", comparison.relative_mse) +
+           fmt::format("{:<32}{:.6g}\n", "relMSE without the worst 0.1 %", comparison.trimmed_relative_mse) +
+           fmt::format("{:<32}{:.6g}\n", "8-bit sRGB MSE", comparison.srgb_mse) +
+           fmt::format("{:<32}{:.2f} dB\n", "PSNR (8-bit sRGB)", comparison.psnr);
+}
+
+}  // namespace
+
+void execute(const CompareOptions& options) {
+    const Image image = read_exr(options.image);
+    const Comparison comparison = compare(image, read_exr(options.reference));
+    if (comparison.pixels < image.extent.pixels()) {
+        print_message(fmt::format("warning: {} pixels of the image and {} of the reference are NaN or infinite; "
+                                  "they are left out",
+                                  comparison.image_non_finite, comparison.reference_non_finite));
+    }
+    print_result(options.json ? json_text(options, comparison) : plain_text(comparison));
+}
+
+}  // namespace vkcppm

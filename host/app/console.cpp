@@ -1,0 +1,26 @@
+#include "app/console.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+#include "core/error.h"
+
+namespace vkcppm {
+
+void print_result(std::string_view text) {
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+        throw Error(ExitCode::cannot_write, std::string("cannot write to standard output: ") + std::strerror(errno));
+    }
+}
+
+void print_message(std::string_view message) {
+    std::string line(message);
+    std::replace_if(line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+    line += '\n';
+    std::fputs(line.c_str(), stderr);
+}
+
+}  // namespace vkcppm

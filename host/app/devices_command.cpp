@@ -1,0 +1,52 @@
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "app/console.h"
+#include "vk/device.h"
+
+namespace vkcppm {
+namespace {
+
+std::string json_text(const std::vector<DeviceInfo>& devices) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (const DeviceInfo& device : devices) {
+        json.push_back({{"index", device.index},
+                        {"name", device.name},
+                        {"type", device.type},
+                        {"driver", device.driver},
+                        {"api_version", device.api_version},
+                        {"uuid", device.uuid},
+                        {"memory_bytes", device.memory_bytes},
+                        {"usable", device.unusable.empty()},
+                        {"unusable_because", device.unusable}});
+    }
+    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string plain_text(const std::vector<DeviceInfo>& devices) {
+    if (devices.empty()) {
+        return "no Vulkan devices\n";
+    }
+    std::string text;
+    for (const DeviceInfo& device : devices) {
+        text += fmt::format("{}: {} ({})\n   {}, Vulkan {}, {:.1f} GiB\n   uuid:{}\n", device.index, device.name,
+                            device.type, device.driver, device.api_version,
+                            double(device.memory_bytes) / (1024.0 * 1024.0 * 1024.0), device.uuid);
+        if (!device.unusable.empty()) {
+            text += fmt::format("   unusable: {}\n", device.unusable);
+        }
+    }
+    return text;
+}
+
+}  // namespace
+
+void execute(const DevicesOptions& options) {
+    const std::vector<DeviceInfo> devices = list_devices();
+    print_result(options.json ? json_text(devices) : plain_text(devices));
+}
+
+}  // namespace vkcppm

@@ -1,0 +1,170 @@
+#include <cstddef>
+#include <iterator>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "app/console.h"
+#include "render/surface.h"
+#include "scene/gltf.h"
+
+namespace vkcppm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Bounds {
+    glm::dvec3 low;
+    glm::dvec3 high;
+};
+
+std::optional<Bounds> bounds_of(const Scene& scene) {
+    std::optional<Bounds> bounds;
+    for (const Triangle& triangle : scene.triangles) {
+        for (const std::uint32_t vertex : triangle.vertex) {
+            const glm::dvec3& p = scene.positions[vertex];
+            bounds = bounds ? Bounds{glm::min(bounds->low, p), glm::max(bounds->high, p)} : Bounds{p, p};
+        }
+    }
+    return bounds;
+}
+
+std::vector<std::size_t> triangles_by_material(const Scene& scene) {
+    std::vector<std::size_t> counts(scene.materials.size());
+    for (const Triangle& triangle : scene.triangles) {
+        ++counts[triangle.material];
+    }
+    return counts;
+}
+
+const char* kind_name(PunctualLight::Kind kind) {
+    switch (kind) {
+    case PunctualLight::Kind::point: return "point";
+    case PunctualLight::Kind::spot: return "spot";
+    case PunctualLight::Kind::directional: return "directional";
+    }
+    return "";
+}
+
+const char* unit(PunctualLight::Kind kind) {
+    return kind == PunctualLight::Kind::directional ? "W/m^2" : "W/sr";
+}
+
+double degrees(double radians) {
+    return radians * 180.0 / std::numbers::pi;
+}
+
+template <typename Vector> Json json_of(const Vector& v) {
+    return {v[0], v[1], v[2]};
+}
+
+template <typename Vector> std::string text_of(const Vector& v) {
+    return fmt::format("({:g}, {:g}, {:g})", v[0], v[1], v[2]);
+}
+
+Json json_of(const PunctualLight& light) {
+    Json json{{"name", light.name}, {"kind", kind_name(light.kind)}, {"intensity", json_of(light.intensity)}};
+    if (light.kind != PunctualLight::Kind::directional) {
+        json["position"] = json_of(light.position);
+    }
+    if (light.kind != PunctualLight::Kind::point) {
+        json["direction"] = json_of(light.direction);
+    }
+    if (light.kind == PunctualLight::Kind::spot) {
+        json["inner_cone_degrees"] = degrees(light.inner_cone);
+        json["outer_cone_degrees"] = degrees(light.outer_cone);
+    }
+    return json;
+}
+
+std::string text_of(const PunctualLight& light) {
+    std::string text = fmt::format("  {} '{}': {} {}", kind_name(light.kind), light.name, text_of(light.intensity),
+                                   unit(light.kind));
+    if (light.kind != PunctualLight::Kind::directional) {
+        text += " at " + text_of(light.position);
+    }
+    if (light.kind != PunctualLight::Kind::point) {
+        text += " towards " + text_of(light.direction);
+    }
+    if (light.kind == PunctualLight::Kind::spot) {
+        text += fmt::format(", cone {:g} to {:g} degrees", degrees(light.inner_cone), degrees(light.outer_cone));
+    }
+    return text + "\n";
+}
+
+std::string json_text(const Scene& scene) {
+    Json json;
+    json["scene"] = scene.file.string();
+    json["hash"] = fmt::format("{:016x}", scene.hash);
+    json["vertices"] = scene.positions.size();
+    json["triangles"] = scene.triangles.size();
+    const std::optional<Bounds> bounds = bounds_of(scene);
+    json["bounds"] = bounds ? Json{{"min", json_of(bounds->low)}, {"max", json_of(bounds->high)}} : Json();
+    json["materials"] = Json::array();
+    const std::vector<std::size_t> triangles = triangles_by_material(scene);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const Material& material = scene.materials[i];
+        json["materials"].push_back({{"name", material.name},
+                                     {"triangles", triangles[i]},
+                                     {"emission", json_of(material.emission)},
+                                     {"treatment", describe_material(material)}});
+    }
+    json["lights"] = Json::array();
+    for (const PunctualLight& light : scene.lights) {
+        json["lights"].push_back(json_of(light));
+    }
+    json["cameras"] = Json::array();
+    for (const Camera& camera : scene.cameras) {
+        json["cameras"].push_back({{"name", camera.name},
+                                   {"yfov_degrees", degrees(camera.yfov)},
+                                   {"aspect", camera.aspect ? Json(*camera.aspect) : Json()},
+                                   {"position", json_of(camera.to_world[3])}});
+    }
+    json["warnings"] = scene.warnings;
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string plain_text(const Scene& scene) {
+    std::string text = fmt::format("{}: {} triangles, {} vertices, hash {:016x}\n", scene.file.string(),
+                                   scene.triangles.size(), scene.positions.size(), scene.hash);
+    const auto out = std::back_inserter(text);
+    if (const std::optional<Bounds> bounds = bounds_of(scene)) {
+        fmt::format_to(out, "bounds {} to {} m\n", text_of(bounds->low), text_of(bounds->high));
+    }
+    fmt::format_to(out, "{} materials\n", scene.materials.size());
+    const std::vector<std::size_t> triangles = triangles_by_material(scene);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const Material& material = scene.materials[i];
+        fmt::format_to(out, "  {} '{}', {} triangles: {}\n", i, material.name, triangles[i],
+                       describe_material(material));
+    }
+    fmt::format_to(out, "{} punctual lights\n", scene.lights.size());
+    for (const PunctualLight& light : scene.lights) {
+        text += text_of(light);
+    }
+    fmt::format_to(out, "{} cameras\n", scene.cameras.size());
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+        const Camera& camera = scene.cameras[i];
+        fmt::format_to(out, "  {} '{}': {:g} degrees high{} at {}\n", i, camera.name, degrees(camera.yfov),
+                       camera.aspect ? fmt::format(", aspect {:g},", *camera.aspect) : "", text_of(camera.to_world[3]));
+    }
+    return text;
+}
+
+}  // namespace
+
+void execute(const InfoOptions& options) {
+    const Scene scene = load_gltf(options.scene);
+    for (const std::string& warning : scene.warnings) {
+        print_message("warning: " + warning);
+    }
+    print_result(options.json ? json_text(scene) : plain_text(scene));
+}
+
+}  // namespace vkcppm

@@ -1,0 +1,59 @@
+#pragma once
+// The command line as a value.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "render/settings.h"
+#include "vk/device.h"
+
+namespace vkcppm {
+
+/// vkcppm SCENE ...
+struct RenderOptions {
+    std::filesystem::path scene;
+    Settings settings;                          // ranges unchecked: resolve_settings does that
+    std::filesystem::path output;               // EXR
+    std::optional<std::filesystem::path> png;
+    double exposure = 0.0;                      // stops, for the PNG
+    std::optional<std::filesystem::path> stats; // JSON
+    Device::Options device;
+    bool quiet = false;
+    bool verbose = false;
+};
+
+/// vkcppm compare IMAGE REFERENCE
+struct CompareOptions {
+    std::filesystem::path image;
+    std::filesystem::path reference;
+    bool json = false;
+};
+
+/// vkcppm info SCENE
+struct InfoOptions {
+    std::filesystem::path scene;
+    bool json = false;
+};
+
+/// vkcppm devices
+struct DevicesOptions {
+    bool json = false;
+};
+
+/// --help and --version
+struct TextOptions {
+    std::string text;
+};
+
+using Options = std::variant<RenderOptions, CompareOptions, InfoOptions, DevicesOptions, TextOptions>;
+
+/// Iterations where --time is given and --iterations is not: the largest number that Settings takes.
+inline constexpr std::uint32_t unbounded_iterations = 0x7fffffff;
+
+/// Reads the command line; argv[0] is the program. The first word chooses the command where it is compare, info or
+/// devices, and is the scene otherwise. Throws Error(usage) with the option, its value and what it takes.
+Options parse_options(int argc, const char* const* argv);
+
+}  // namespace vkcppm

@@ -1,0 +1,75 @@
+#include "app/progress.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace vkcppm {
+namespace {
+
+constexpr double terminal_interval = 0.1;  // s
+constexpr double plain_interval = 10.0;    // s
+
+}  // namespace
+
+std::string duration_text(double seconds) {
+    const double whole = std::round(seconds);
+    if (whole < 60.0) {
+        return fmt::format("{:.0f} s", whole);
+    }
+    if (whole < 3600.0) {
+        return fmt::format("{:.0f} min {:.0f} s", std::floor(whole / 60.0), std::fmod(whole, 60.0));
+    }
+    const double minutes = std::floor(whole / 60.0);
+    return fmt::format("{:.0f} h {:.0f} min", std::floor(minutes / 60.0), std::fmod(minutes, 60.0));
+}
+
+std::string progress_text(const Progress& progress, std::optional<double> time_limit) {
+    const double of_iterations = double(progress.iterations_done) / double(progress.iterations_total);
+    const double of_time = time_limit ? progress.wall_seconds / *time_limit : 0.0;
+    const double done = std::min(std::max(of_iterations, of_time), 1.0);
+    // The bound on iterations says nothing where the time decides.
+    std::string text = of_time > of_iterations
+                           ? fmt::format("{} iterations", progress.iterations_done)
+                           : fmt::format("{}/{} iterations", progress.iterations_done, progress.iterations_total);
+    text += fmt::format(" ({:.0f} %)", std::floor(100.0 * done));
+    if (done > 0.0) {
+        text += fmt::format(", {} left", duration_text(progress.wall_seconds * (1.0 - done) / done));
+    }
+    return text;
+}
+
+ProgressLine::ProgressLine(std::FILE* stream, bool terminal, std::optional<double> time_limit)
+    : stream_(stream), terminal_(terminal), time_limit_(time_limit) {
+}
+
+ProgressLine::~ProgressLine() {
+    if (open_) {
+        std::fputs("\n", stream_);
+    }
+}
+
+void ProgressLine::update(const Progress& progress) {
+    const double interval = terminal_ ? terminal_interval : plain_interval;
+    if (last_ && progress.wall_seconds - *last_ < interval) {
+        return;
+    }
+    last_ = progress.wall_seconds;
+    write(progress_text(progress, time_limit_));
+    open_ = terminal_;
+}
+
+void ProgressLine::finish(const Progress& progress) {
+    write(fmt::format("{} iterations in {:.1f} s", progress.iterations_done, progress.wall_seconds));
+    open_ = terminal_;
+}
+
+void ProgressLine::write(const std::string& text) {
+    // Return to the first column and clear what the shorter new text would leave of the old.
+    const std::string line = terminal_ ? "\r" + text + "\x1b[K" : text + "\n";
+    std::fputs(line.c_str(), stream_);
+    std::fflush(stream_);
+}
+
+}  // namespace vkcppm

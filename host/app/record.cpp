@@ -1,0 +1,111 @@
+#include "app/record.h"
+
+#include <iterator>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace vkcppm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Invalid UTF-8, which a file's names may hold, is replaced.
+std::string dump(const Json& json, int indent = -1) {
+    return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+/// Names as the command line's options, with '_' for '-'.
+Json settings_json(const Settings& settings) {
+    Json json;
+    json["estimator"] = settings.estimator;
+    json["iterations"] = settings.iterations;
+    if (settings.seconds) {
+        json["time"] = *settings.seconds;
+    }
+    json["photons"] = settings.photons;
+    if (settings.size) {
+        json["size"] = fmt::format("{}x{}", settings.size->width, settings.size->height);
+    }
+    json["camera"] = settings.camera;
+    json["seed"] = settings.seed;
+    json["max_depth"] = settings.max_depth;
+    json["knn"] = settings.knn;
+    json["alpha"] = settings.alpha;
+    json["k"] = settings.k;
+    json["beta"] = settings.beta;
+    json["significance"] = settings.significance;
+    json["rings"] = settings.rings;
+    json["sectors"] = settings.sectors;
+    return json;
+}
+
+std::string hash_text(const Scene& scene) {
+    return fmt::format("{:016x}", scene.hash);
+}
+
+}  // namespace
+
+ExrAttributes exr_attributes(const Scene& scene, const Rendering& rendering) {
+    Json json = settings_json(rendering.settings);
+    json["iterations_done"] = rendering.report.iterations;
+    json["emitted_photons"] = rendering.report.emitted_paths;
+    json["scene"] = scene.file.filename().string();
+    json["scene_hash"] = hash_text(scene);
+    json["device"] = rendering.report.device;
+    json["driver"] = rendering.report.driver;
+    json["version"] = VKCPPM_VERSION;
+    ExrAttributes attributes;
+    for (const auto& [name, value] : json.items()) {
+        attributes.emplace_back("vkcppm." + name, value.is_string() ? value.get<std::string>() : dump(value));
+    }
+    return attributes;
+}
+
+std::string stats_json(const Scene& scene, const Rendering& rendering) {
+    const Report& report = rendering.report;
+    Json json;
+    json["version"] = VKCPPM_VERSION;
+    json["device"] = report.device;
+    json["driver"] = report.driver;
+    json["scene"] = {{"file", scene.file.string()}, {"hash", hash_text(scene)}, {"triangles", scene.triangles.size()}};
+    json["settings"] = settings_json(rendering.settings);
+    json["totals"] = {{"iterations", report.iterations},
+                      {"emitted_paths", report.emitted_paths},
+                      {"stored_photons", report.stored_photons},
+                      {"rays", report.rays},
+                      {"wall_seconds", report.wall_seconds},
+                      {"cpu_seconds", report.cpu_seconds},
+                      {"setup_seconds", report.setup_seconds},
+                      {"peak_memory_bytes", report.peak_memory_bytes},
+                      {"device_memory_bytes", report.device_memory_bytes}};
+    json["passes"] = Json::array();
+    for (const PassReport& pass : report.passes) {
+        json["passes"].push_back(
+            {{"name", pass.name}, {"calls", pass.calls}, {"device_seconds", pass.device_seconds}});
+    }
+    return dump(json, 2) + "\n";
+}
+
+std::string stats_table(const Report& report) {
+    double total = 0.0;
+    for (const PassReport& pass : report.passes) {
+        total += pass.device_seconds;
+    }
+    std::string text = fmt::format("{:<20}{:>10}{:>14}{:>8}\n", "pass", "calls", "device s", "%");
+    const auto out = std::back_inserter(text);
+    for (const PassReport& pass : report.passes) {
+        fmt::format_to(out, "{:<20}{:>10}{:>14.4f}{:>8.1f}\n", pass.name, pass.calls, pass.device_seconds,
+                       total > 0.0 ? 100.0 * pass.device_seconds / total : 0.0);
+    }
+    fmt::format_to(out, "{:<20}{:>10}{:>14.4f}\n", "all", "", total);
+    fmt::format_to(out, "{} emitted paths, {} stored photons, {} rays\n", report.emitted_paths, report.stored_photons,
+                   report.rays);
+    fmt::format_to(out, "{:.3f} s wall, {:.3f} s CPU, {:.3f} s setup, {:.1f} MiB resident, {:.1f} MiB on the device\n",
+                   report.wall_seconds, report.cpu_seconds, report.setup_seconds,
+                   double(report.peak_memory_bytes) / 1048576.0, double(report.device_memory_bytes) / 1048576.0);
+    fmt::format_to(out, "{}, {}", report.device, report.driver);
+    return text;
+}
+
+}  // namespace vkcppm

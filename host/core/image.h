@@ -1,0 +1,27 @@
+#pragma once
+// A picture in memory: linear Rec. 709 radiance, first row on top.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+namespace vkcppm {
+
+struct Extent {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::size_t pixels() const { return std::size_t(width) * height; }
+    bool operator==(const Extent&) const = default;
+};
+
+/// rgb [height x width], W m^-2 sr^-1 a channel, linear Rec. 709, row-major, first row on top.
+struct Image {
+    Extent extent;
+    std::vector<glm::vec3> rgb;
+    const glm::vec3& at(std::uint32_t x, std::uint32_t y) const { return rgb[std::size_t(y) * extent.width + x]; }
+    bool operator==(const Image&) const = default;
+};
+
+}  // namespace vkcppm

@@ -1,0 +1,104 @@
+#include "io/atomic_file.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "core/error.h"
+
+namespace vkcppm {
+namespace fs = std::filesystem;
+namespace {
+
+[[noreturn]] void fail(const fs::path& file, const std::string& reason) {
+    throw Error(ExitCode::cannot_write, "cannot write " + file.string() + ": " + reason);
+}
+
+[[noreturn]] void fail_with_errno(const fs::path& file) {
+    fail(file, std::strerror(errno));
+}
+
+/// The file that a rename would replace: `file`, or what it links to. Throws where that is no file one may replace.
+fs::path replaceable(const fs::path& file) {
+    if (!file.has_filename()) {
+        fail(file, "it names no file");
+    }
+    std::error_code missing;
+    const fs::file_status status = fs::status(file, missing);
+    if (!fs::exists(status)) {
+        return file;
+    }
+    if (!fs::is_regular_file(status)) {
+        fail(file, fs::is_directory(status) ? "it is a folder" : "it is not a regular file");
+    }
+    if (::access(file.c_str(), W_OK) != 0) {
+        fail_with_errno(file);
+    }
+    return fs::canonical(file);
+}
+
+/// An open temporary file beside its target; removed on destruction unless committed.
+class Part {
+public:
+    explicit Part(const fs::path& file) : file_(file), target_(replaceable(file)), part_(target_) {
+        part_ += "." + std::to_string(::getpid()) + ".part";
+        descriptor_ = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
+        if (descriptor_ < 0) {
+            fail_with_errno(file_);
+        }
+    }
+    Part(const Part&) = delete;
+    Part& operator=(const Part&) = delete;
+    ~Part() {
+        if (descriptor_ >= 0) {
+            ::close(descriptor_);
+        }
+        if (!committed_) {
+            ::unlink(part_.c_str());
+        }
+    }
+
+    void write(std::string_view bytes) {
+        while (!bytes.empty()) {
+            const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+            if (written >= 0) {
+                bytes.remove_prefix(std::size_t(written));
+            } else if (errno != EINTR) {
+                fail_with_errno(file_);
+            }
+        }
+    }
+
+    void commit() {
+        if (::close(std::exchange(descriptor_, -1)) != 0 || std::rename(part_.c_str(), target_.c_str()) != 0) {
+            fail_with_errno(file_);
+        }
+        committed_ = true;
+    }
+
+private:
+    fs::path file_;    // as the caller names it, for messages
+    fs::path target_;
+    fs::path part_;
+    int descriptor_ = -1;
+    bool committed_ = false;
+};
+
+}  // namespace
+
+void write_file(const fs::path& file, std::string_view bytes) {
+    Part part(file);
+    part.write(bytes);
+    part.commit();
+}
+
+void check_writable(const fs::path& file) {
+    Part part(file);
+}
+
+}  // namespace vkcppm

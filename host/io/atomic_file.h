@@ -1,0 +1,17 @@
+#pragma once
+// Files that are written whole or not at all.
+
+#include <filesystem>
+#include <string_view>
+
+namespace vkcppm {
+
+/// Writes `bytes` to a temporary file in the same folder and renames it to `file`, so that `file` holds either what it
+/// held before or all of `bytes`. A symbolic link stays a link: what it points to is replaced.
+/// Throws Error(cannot_write) with the file and the reason, after removing the temporary file.
+void write_file(const std::filesystem::path& file, std::string_view bytes);
+
+/// Throws Error(cannot_write) where write_file would fail for want of a folder or of permission. Leaves no trace.
+void check_writable(const std::filesystem::path& file);
+
+}  // namespace vkcppm

@@ -1,0 +1,168 @@
+#include "io/exr.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+
+#include <ImfChannelList.h>
+#include <ImfChromaticities.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStdIO.h>
+#include <ImfStringAttribute.h>
+
+#include "core/error.h"
+#include "io/atomic_file.h"
+
+namespace vkcppm {
+namespace fs = std::filesystem;
+namespace {
+
+// All work happens in the calling thread: a picture is small beside its render, and the bytes cannot depend on timing.
+constexpr int no_worker_threads = 0;
+// A header of a few bytes may claim any size; more than this is taken for a damaged file. 2^27 pixels are 1.5 GiB.
+constexpr std::int64_t largest_picture = std::int64_t(1) << 27;
+
+[[noreturn]] void fail_to_read(const fs::path& file, const std::string& reason) {
+    throw Error(ExitCode::bad_scene, file.string() + ": cannot read this EXR picture: " + reason);
+}
+
+void require_file(const fs::path& file) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(file, ignored)) {
+        throw Error(ExitCode::no_input, file.string() + ": no such file");
+    }
+}
+
+std::int64_t width(const Imath::Box2i& window) {
+    return std::int64_t(window.max.x) - window.min.x + 1;
+}
+
+std::int64_t height(const Imath::Box2i& window) {
+    return std::int64_t(window.max.y) - window.min.y + 1;
+}
+
+void check_size(const fs::path& file, const char* name, const Imath::Box2i& window) {
+    if (width(window) > largest_picture || height(window) > largest_picture ||
+        width(window) * height(window) > largest_picture) {
+        fail_to_read(file, std::string("its ") + name + " is " + std::to_string(width(window)) + "x" +
+                               std::to_string(height(window)) + " pixels, more than " +
+                               std::to_string(largest_picture) + " in all");
+    }
+}
+
+Image read_rgb(const fs::path& file) {
+    Imf::InputFile input(file.c_str(), no_worker_threads);
+    const Imath::Box2i data = input.header().dataWindow();
+    const Imath::Box2i display = input.header().displayWindow();
+    check_size(file, "data window", data);
+    check_size(file, "display window", display);
+    for (const char* name : {"R", "G", "B"}) {
+        if (!input.header().channels().findChannel(name)) {
+            fail_to_read(file, std::string("it has no channel ") + name);
+        }
+    }
+
+    std::vector<glm::vec3> pixels(std::size_t(width(data) * height(data)));
+    const std::size_t pixel_stride = sizeof(glm::vec3);
+    const std::size_t row_stride = pixel_stride * std::size_t(width(data));
+    Imf::FrameBuffer frame;
+    for (int c = 0; const char* name : {"R", "G", "B"}) {
+        frame.insert(name, Imf::Slice::Make(Imf::FLOAT, &pixels[0][c++], data, pixel_stride, row_stride));
+    }
+    input.setFrameBuffer(frame);
+    input.readPixels(data.min.y, data.max.y);
+
+    Image image;
+    image.extent = {std::uint32_t(width(display)), std::uint32_t(height(display))};
+    image.rgb.assign(image.extent.pixels(), glm::vec3(0.0f));
+    const int left = std::max(data.min.x, display.min.x);
+    const int right = std::min(data.max.x, display.max.x);
+    for (int y = std::max(data.min.y, display.min.y); y <= std::min(data.max.y, display.max.y) && left <= right; ++y) {
+        const auto from = pixels.begin() + (y - data.min.y) * width(data) + (left - data.min.x);
+        std::copy(from, from + (right - left + 1),
+                  image.rgb.begin() + (y - display.min.y) * width(display) + (left - display.min.x));
+    }
+    return image;
+}
+
+}  // namespace
+
+ExrChannels to_channels(const Image& image) {
+    ExrChannels channels;
+    channels.extent = image.extent;
+    for (int c = 0; const char* name : {"R", "G", "B"}) {
+        std::vector<float>& values = channels.values[name];
+        values.reserve(image.rgb.size());
+        for (const glm::vec3& pixel : image.rgb) {
+            values.push_back(pixel[c]);
+        }
+        ++c;
+    }
+    return channels;
+}
+
+void write_exr(const fs::path& file, const ExrChannels& channels, const ExrAttributes& attributes) {
+    const auto [columns, rows] = channels.extent;
+    // In memory first: OpenEXR's own file stream does not notice when the last bytes fail to reach the disk.
+    Imf::StdOSStream stream;
+    try {
+        Imf::Header header{int(columns), int(rows)};
+        header.compression() = Imf::ZIP_COMPRESSION;
+        Imf::addChromaticities(header, Imf::Chromaticities());  // the default is Rec. 709
+        for (const auto& [name, text] : attributes) {
+            header.insert(name, Imf::StringAttribute(text));
+        }
+        Imf::FrameBuffer frame;
+        for (const auto& [name, values] : channels.values) {
+            assert(values.size() == channels.extent.pixels());
+            header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+            frame.insert(name, Imf::Slice::Make(Imf::FLOAT, values.data(), header.dataWindow(), sizeof(float),
+                                                sizeof(float) * columns));
+        }
+        Imf::OutputFile output(stream, header, no_worker_threads);
+        output.setFrameBuffer(frame);
+        output.writePixels(int(rows));
+    } catch (const std::exception& error) {
+        throw Error(ExitCode::cannot_write, "cannot write " + file.string() + ": " + error.what());
+    }
+    write_file(file, stream.str());
+}
+
+void write_exr(const fs::path& file, const Image& image, const ExrAttributes& attributes) {
+    write_exr(file, to_channels(image), attributes);
+}
+
+Image read_exr(const fs::path& file) {
+    require_file(file);
+    try {
+        return read_rgb(file);
+    } catch (const Error&) {
+        throw;
+    } catch (const std::exception& error) {
+        fail_to_read(file, error.what());
+    }
+}
+
+ExrAttributes read_exr_attributes(const fs::path& file) {
+    require_file(file);
+    try {
+        ExrAttributes attributes;
+        Imf::InputFile input(file.c_str(), no_worker_threads);
+        for (auto it = input.header().begin(); it != input.header().end(); ++it) {
+            if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute())) {
+                attributes.emplace_back(it.name(), text->value());
+            }
+        }
+        return attributes;
+    } catch (const std::exception& error) {
+        fail_to_read(file, error.what());
+    }
+}
+
+}  // namespace vkcppm

@@ -1,0 +1,38 @@
+#pragma once
+// OpenEXR files: float channels with text attributes.
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/image.h"
+
+namespace vkcppm {
+
+/// Float channels of one size by name; each [height x width], row-major, first row on top.
+struct ExrChannels {
+    Extent extent;
+    std::map<std::string, std::vector<float>> values;
+};
+
+/// Name and text, in any order: the file sorts them.
+using ExrAttributes = std::vector<std::pair<std::string, std::string>>;
+
+/// The channels R, G and B of `image`.
+ExrChannels to_channels(const Image& image);
+
+/// Writes 32-bit float scan lines with ZIP compression and the chromaticities of Rec. 709. The same arguments give the
+/// same bytes. The file is written whole or not at all (write_file). Throws Error(cannot_write).
+void write_exr(const std::filesystem::path& file, const ExrChannels& channels, const ExrAttributes& attributes = {});
+void write_exr(const std::filesystem::path& file, const Image& image, const ExrAttributes& attributes = {});
+
+/// Reads R, G and B, float or half, scan lines or tiles. The picture is the display window; what the data window does
+/// not cover is black. Throws Error: no_input where the file is missing, bad_scene where it is not such a picture.
+Image read_exr(const std::filesystem::path& file);
+
+/// The text attributes of a file, sorted by name. Throws like read_exr.
+ExrAttributes read_exr_attributes(const std::filesystem::path& file);
+
+}  // namespace vkcppm

@@ -1,0 +1,14 @@
+#pragma once
+// PNG files: a picture for the eye.
+
+#include <filesystem>
+
+#include "core/image.h"
+
+namespace vkcppm {
+
+/// Writes `image` times 2^exposure, clamped to [0, 1] and encoded as 8-bit sRGB; NaN becomes black. exposure: stops.
+/// The file is written whole or not at all (write_file). Throws Error(cannot_write).
+void write_png(const std::filesystem::path& file, const Image& image, double exposure = 0.0);
+
+}  // namespace vkcppm

@@ -1,0 +1,33 @@
+#pragma once
+// A four-wide BVH over triangles, quantised to 64 bytes a node, for shaders/include/traverse.glsl.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "shared/types.h"
+
+namespace vkcppm {
+
+struct Bvh {
+    std::vector<gpu::BvhNode> nodes;      // root first, depth-first
+    std::vector<std::uint32_t> order;     // [triangles] leaf order: position -> index of the input
+    std::uint32_t stack = 1;              // entries that a traversal can need, at most
+};
+
+/// Builds by binned surface area heuristic (Wald 2007), both cores, the same tree on any number of threads; then
+/// collapses two levels into one and quantises boxes outwards. triangles [T][3]: corners in the scene frame, finite,
+/// coordinates within [-1, 1]. O(T log T). T may be 0: one node without children.
+Bvh build_bvh(std::span<const std::array<glm::vec3, 3>> triangles);
+
+/// Box of child `c` of a node, as the kernels decode it.
+struct Box {
+    glm::vec3 low{0.0f};
+    glm::vec3 high{0.0f};
+};
+Box child_box(const gpu::BvhNode& node, int c);
+
+}  // namespace vkcppm

@@ -1,0 +1,303 @@
+#include "render/integrator.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "render/estimators.h"
+#include "render/kernels.h"
+#include "shared/bindings.h"
+
+namespace vkcppm {
+namespace {
+
+constexpr std::uint32_t timed_launches = 2048;
+constexpr std::uint32_t workgroup = 64;
+constexpr std::uint32_t photons_per_lane = 16;
+constexpr std::uint32_t scan_blocks = 4096;            // SCAN_BLOCKS of shaders/include/counters.glsl
+constexpr std::uint32_t stride_invocations = 16384;    // of kernels that stride over their input
+constexpr std::uint32_t first_photon_capacity = 10;    // photons a path, before a render knows better
+constexpr double radius_cap = 0.2;                     // of the scene's radius
+constexpr double footprint_cap = 64.0;                 // footprints of the pixel
+constexpr std::uint32_t plan_interval = 16;            // iterations between plans of the grid, after the first few
+
+/// True where the grid is planned before iteration i: 0, the powers of two, multiples of plan_interval.
+bool plans_grid(std::uint32_t i) { return (i & (i - 1)) == 0 || i % plan_interval == 0; }
+
+void set_camera(gpu::Params& params, const Camera& camera, const SceneFrame& frame, Extent size) {
+    const double half_height = std::tan(0.5 * camera.yfov);
+    const double half_width = half_height * double(size.width) / double(size.height);
+    params.eye = glm::vec3(frame.point(glm::dvec3(camera.to_world[3])));
+    params.right = glm::vec3(glm::dvec3(camera.to_world[0]) * half_width);
+    params.up = glm::vec3(glm::dvec3(camera.to_world[1]) * half_height);
+    params.forward = glm::vec3(-glm::dvec3(camera.to_world[2]));
+    params.width = size.width;
+    params.height = size.height;
+    params.pixel_radius = float(2.0 * half_height / double(size.height) / std::sqrt(std::numbers::pi));
+}
+
+void set_test(gpu::Params& params, const Settings& settings) {
+    for (std::uint32_t m = 1; m <= settings.rings; ++m) {
+        const boost::math::chi_squared distribution(double(m * settings.sectors - 1));
+        params.threshold[m - 1] = float(boost::math::quantile(boost::math::complement(distribution, settings.significance)));
+    }
+    for (std::uint32_t s = 0; s < settings.sectors / 2; ++s) {
+        const double angle = 2.0 * std::numbers::pi * double(s) / double(settings.sectors);
+        params.sector_edge[s] = glm::vec2(std::cos(angle), std::sin(angle));
+    }
+}
+
+}  // namespace
+
+Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings)
+    : device_(device), bindings_(device), commands_(device, bindings_, timed_launches) {
+    const EstimatorRow& estimator = find_estimator(settings.estimator);
+    pixels_ = settings.size->pixels();
+    for (const Pass pass : {Pass::eye, Pass::photon, Pass::knn, Pass::gather}) rounds_[pass] = 1;
+
+    set_camera(params_, camera, scene.frame, *settings.size);
+    set_test(params_, settings);
+    params_.seed = settings.seed;
+    params_.bounds_low = scene.low;
+    params_.bounds_high = scene.high;
+    params_.photons = scene.lights.empty() ? 0 : settings.photons;
+    params_.inverse_paths = params_.photons > 0 ? 1.0f / float(params_.photons) : 0.0f;
+    params_.photons_per_lane = photons_per_lane;
+    params_.photon_lanes = std::max(1u, (params_.photons + photons_per_lane - 1) / photons_per_lane);
+    params_.photon_capacity = photons_per_lane * first_photon_capacity;
+    params_.max_depth = settings.max_depth;
+    params_.light_count = std::uint32_t(scene.lights.size());
+    params_.step_budget = device.step_budget();
+    params_.knn = settings.knn;
+    params_.radius_cap = float(radius_cap * std::max(scene.radius, 1e-3));
+    params_.scene_area = float(std::max(scene.area, 1e-12));
+    const double mean_disc = double(settings.knn) * params_.scene_area / double(settings.photons);
+    params_.radius_floor = std::min(params_.radius_cap, float(std::sqrt(mean_disc / std::numbers::pi)));
+    params_.footprint_cap = float(footprint_cap);
+    params_.alpha = float(settings.alpha);
+    params_.k = float(settings.k);
+    params_.beta = float(settings.beta);
+    params_.cells = std::bit_ceil(std::clamp(16 * settings.photons, 1u << 12, 1u << 20));
+    params_.sort_lanes = std::bit_ceil(std::clamp(settings.photons / 128, 64u, 4096u));
+    const auto key_bits = std::uint32_t(std::countr_zero(params_.cells));
+    digits_ = (key_bits + 7) / 8;
+    digit_bits_ = (key_bits + digits_ - 1) / digits_;
+
+    using Kind = Buffer::Kind;
+    const auto upload = [&](std::uint32_t binding, const char* name, const auto& data, Kind kind) {
+        allocate(binding, name, data.size() * sizeof(data[0]), kind);
+        buffer(binding).upload(data);
+    };
+    upload(BIND_NODES, "bvh nodes", scene.bvh.nodes, Kind::uint_texels);
+    upload(BIND_TRIANGLES, "triangles", scene.triangles, Kind::float_texels);
+    upload(BIND_SHADING, "shading", scene.shading, Kind::uint_texels);
+    upload(BIND_MATERIALS, "materials", scene.materials, Kind::storage);
+    upload(BIND_LIGHTS, "lights", scene.lights, Kind::storage);
+    allocate(BIND_PARAMS, "parameters", sizeof(gpu::Params), Kind::uniform);
+    allocate(BIND_STATUS, "status", sizeof(gpu::Status), Kind::storage);
+    allocate(BIND_GRID, "grid", sizeof(gpu::Grid), Kind::storage);
+    allocate(BIND_HIT_POSITION, "hit positions", pixels_ * sizeof(gpu::HitPosition), Kind::storage);
+    allocate(BIND_HIT_WEIGHT, "hit weights", pixels_ * sizeof(gpu::HitWeight), Kind::storage);
+    allocate(BIND_HIT_EMISSION, "hit emission", pixels_ * sizeof(gpu::HitEmission), Kind::storage);
+    allocate(BIND_GATHERED, "gathered", pixels_ * sizeof(gpu::Gathered), Kind::storage);
+    allocate(BIND_PIXELS, "pixels", pixels_ * sizeof(gpu::PixelState), Kind::storage);
+    const std::uint64_t bins = estimator.sectors ? settings.rings * settings.sectors : 0;
+    allocate(BIND_TALLY, "tally", bins * pixels_ * sizeof(std::uint32_t), Kind::storage);
+    allocate(BIND_FILM, "film", pixels_ * sizeof(gpu::Film), Kind::storage);
+    allocate(BIND_CURSOR, "cursors", pixels_ * sizeof(gpu::Cursor), Kind::storage);
+    allocate(BIND_NEAREST, "nearest", settings.knn * pixels_ * sizeof(float), Kind::storage);
+    allocate(BIND_IMAGE, "image", pixels_ * sizeof(gpu::vec3), Kind::storage);
+    allocate(BIND_PATHS, "paths", params_.photon_lanes * sizeof(gpu::PathState), Kind::storage);
+    const std::uint64_t counters = std::uint64_t(params_.cells) + 1 + params_.photon_lanes + 1 +
+                                   (std::uint64_t(params_.sort_lanes) << digit_bits_) + scan_blocks;
+    allocate(BIND_COUNTERS, "counters", counters * sizeof(std::uint32_t), Kind::storage);
+    allocate_photons();
+
+    gpu::PixelState pixel{};
+    pixel.batch = float(settings.knn);  // B_1 = k_NN
+    buffer(BIND_PIXELS).upload(std::vector<gpu::PixelState>(pixels_, pixel));
+    compile(settings, scene.features, scene.bvh.stack);
+}
+
+void Integrator::allocate(std::uint32_t binding, const std::string& name, std::uint64_t bytes, Buffer::Kind kind) {
+    buffers_.erase(binding);
+    buffers_.emplace(binding, Buffer(device_, name, bytes, kind));
+    bindings_.bind(binding, buffers_.at(binding));
+}
+
+/// Buffers whose size follows the number of photons that a lane can store; again when a render needs more.
+void Integrator::allocate_photons() {
+    using Kind = Buffer::Kind;
+    const std::uint64_t slots = std::uint64_t(params_.photon_lanes) * params_.photon_capacity;
+    allocate(BIND_PHOTONS, "photons", slots * sizeof(gpu::Photon), Kind::storage);
+    allocate(BIND_PHOTON_FLUX, "photon flux", slots * sizeof(gpu::PhotonFlux), Kind::storage);
+    allocate(BIND_SORTED, "sorted photons", slots * sizeof(gpu::Photon), Kind::float_texels);
+    allocate(BIND_SORTED_FLUX, "sorted photon flux", slots * sizeof(gpu::PhotonFlux), Kind::float_texels);
+    allocate(BIND_PAIRS_A, "pairs a", slots * sizeof(gpu::uvec2), Kind::storage);
+    allocate(BIND_PAIRS_B, "pairs b", slots * sizeof(gpu::uvec2), Kind::storage);
+    bindings_.bind(BIND_SORTED_TEXELS, buffer(BIND_SORTED));
+    bindings_.bind(BIND_FLUX_TEXELS, buffer(BIND_SORTED_FLUX));
+    buffer(BIND_PARAMS).upload_value(params_);
+}
+
+void Integrator::compile(const Settings& settings, std::uint32_t features, std::uint32_t stack) {
+    const Specialization specialization = {
+        {SPEC_WORKGROUP, workgroup},       {SPEC_STACK, stack},
+        {SPEC_ESTIMATOR, find_estimator(settings.estimator).id},
+        {SPEC_RINGS, settings.rings},      {SPEC_SECTORS, settings.sectors},
+        {SPEC_FEATURES, features},         {SPEC_DIGIT_BITS, digit_bits_},
+    };
+    for (const KernelModule& module : kernel_modules()) {
+        const std::string name(module.name);
+        kernels_.emplace(name, Kernel(device_, bindings_, name, module.spirv, specialization));
+        passes_.push_back({name, 0, 0.0});
+    }
+}
+
+// The algorithm box: every line is one pass over its buffers, each after the one before it.
+void Integrator::iterate(std::uint32_t i, Pass from, std::uint32_t first_round) {
+    const auto runs = [&](Pass pass) { return from <= pass; };
+    const auto round = [&](Pass pass) { return from == pass ? first_round : 0; };
+    if (runs(Pass::eye)) launch_rounds("eye", pixels_, Pass::eye, i, round(Pass::eye));
+    if (runs(Pass::photon)) launch_rounds("photon", params_.photon_lanes, Pass::photon, i, round(Pass::photon));
+    if (runs(Pass::grid)) build_grid(i);
+    if (runs(Pass::knn)) launch_rounds("knn", pixels_, Pass::knn, i, round(Pass::knn));
+    if (runs(Pass::gather)) launch_rounds("gather", pixels_, Pass::gather, i, round(Pass::gather));
+    launch("update", pixels_, {.iteration = i, .round = 0, .last_round = 1, .offset = plans_grid(i + 1) ? 1u : 0u, .count = 0});
+    launch("advance", 1, {.iteration = i, .round = 0, .last_round = 1, .offset = 0, .count = 0});
+}
+
+void Integrator::build_grid(std::uint32_t i) {
+    const gpu::Launch plain{.iteration = i, .round = 0, .last_round = 1, .offset = 0, .count = 0};
+    const std::uint32_t lanes_at = params_.cells + 1;
+    scan(i, lanes_at, params_.photon_lanes + 1);  // photons before each lane, and in all
+    if (plans_grid(i)) launch("grid_plan", 1, plain);
+    launch("grid_clear", stride_invocations, plain);
+    launch("grid_key", params_.photon_lanes, plain);
+    const std::uint32_t radix_at = lanes_at + params_.photon_lanes + 1;
+    for (std::uint32_t digit = 0; digit < digits_; ++digit) {
+        gpu::Launch push = plain;
+        push.offset = digit * digit_bits_;
+        push.count = digit % 2;
+        launch("radix_count", params_.sort_lanes, push);
+        scan(i, radix_at, params_.sort_lanes << digit_bits_);
+        launch("radix_scatter", params_.sort_lanes, push);
+    }
+    gpu::Launch order = plain;
+    order.count = digits_ % 2;
+    launch("grid_order", stride_invocations, order);
+    scan(i, 0, params_.cells + 1);  // photons before each cell
+}
+
+/// Exclusive scan of counters[offset .. offset + count).
+void Integrator::scan(std::uint32_t i, std::uint32_t offset, std::uint32_t count) {
+    const gpu::Launch push{.iteration = i, .round = 0, .last_round = 1, .offset = offset, .count = count};
+    launch("scan_sums", scan_blocks, push);
+    launch("scan_blocks", workgroup, push);
+    launch("scan_apply", scan_blocks, push);
+}
+
+void Integrator::launch(const std::string& kernel, std::uint64_t invocations, const gpu::Launch& push) {
+    commands_.launch(kernels_.at(kernel), invocations, push);
+}
+
+/// As many rounds as the pass has needed so far; the last one blocks what follows where work is left.
+void Integrator::launch_rounds(const std::string& kernel, std::uint64_t invocations, Pass pass, std::uint32_t i,
+                               std::uint32_t first_round) {
+    for (std::uint32_t r = 0; r < rounds_.at(pass); ++r) {
+        const std::uint32_t last = r + 1 == rounds_.at(pass) ? 1 : 0;
+        launch(kernel, invocations, {.iteration = i, .round = first_round + r, .last_round = last, .offset = 0, .count = 0});
+    }
+}
+
+/// Submits, waits, and books the times by kernel.
+void Integrator::finish() {
+    for (const Timing& timing : commands_.finish()) {
+        const auto pass = std::find_if(passes_.begin(), passes_.end(),
+                                       [&](const PassReport& p) { return p.name == timing.kernel->name(); });
+        ++pass->calls;
+        pass->device_seconds += timing.seconds;
+    }
+}
+
+void Integrator::run(std::uint32_t count) {
+    const std::uint32_t target = completed_ + count;
+    commands_.begin();
+    for (std::uint32_t i = completed_; i < target; ++i) iterate(i, Pass::eye, 0);
+    finish();
+    while (unblock()) {
+        // The blocked iteration has been finished; those behind it did nothing.
+        if (completed_ >= target) break;
+        commands_.begin();
+        for (std::uint32_t i = completed_; i < target; ++i) iterate(i, Pass::eye, 0);
+        finish();
+    }
+    assert(completed_ == target);
+}
+
+/// Reads the status. Where a pass ran out of its budget: gives it more and finishes the iteration. Returns true where
+/// there was such a pass, so that iterations behind it have yet to run.
+bool Integrator::unblock() {
+    bool was_blocked = false;
+    while (true) {
+        gpu::Status status = buffer(BIND_STATUS).download_value<gpu::Status>();
+        rays_ += status.rays + pixels_ * (status.completed - completed_);
+        stored_ += status.stored;
+        invalid_ += status.invalid;
+        completed_ = status.completed;
+        const std::uint32_t blocked = status.blocked;
+        if (status.stuck > 0) {
+            throw Error(ExitCode::internal, fmt::format("{} rays need more than {} steps of the BVH each, the limit of device '{}'",
+                                                        status.stuck, params_.step_budget, device_.info().name));
+        }
+        status.rays = status.stored = status.invalid = status.blocked = 0;
+        buffer(BIND_STATUS).upload_value(status);
+        if (blocked == 0) return was_blocked;
+        was_blocked = true;
+
+        Pass from = Pass::gather;
+        std::uint32_t first_round = 1;
+        if (blocked & PASS_EYE) from = Pass::eye;
+        else if (blocked & (PASS_PHOTON | PASS_CAPACITY)) from = Pass::photon;
+        else if (blocked & PASS_KNN) from = Pass::knn;
+        if (blocked & PASS_CAPACITY) {
+            params_.photon_capacity = std::max(params_.photon_capacity, status.capacity) * 5 / 4;
+            allocate_photons();
+            first_round = 0;  // the paths start again and are the same
+        }
+        commands_.begin();
+        iterate(completed_, from, first_round);
+        if (!(blocked & PASS_CAPACITY) || (blocked & PASS_PHOTON)) rounds_[from] *= 2;
+        finish();
+    }
+}
+
+Image Integrator::resolve() {
+    commands_.begin();
+    launch("resolve", pixels_, {});
+    finish();
+    Image image;
+    image.extent = {params_.width, params_.height};
+    image.rgb = buffer(BIND_IMAGE).download<glm::vec3>(pixels_);
+    return image;
+}
+
+void Integrator::fill(Report& report) const {
+    report.passes = passes_;
+    std::erase_if(report.passes, [](const PassReport& pass) { return pass.calls == 0; });
+    report.iterations = completed_;
+    report.emitted_paths = std::uint64_t(completed_) * params_.photons;
+    report.stored_photons = stored_;
+    report.rays = rays_;
+    report.device_memory_bytes = device_.peak_bytes();
+    report.device = device_.info().name;
+    report.driver = device_.info().driver;
+}
+
+}  // namespace vkcppm

@@ -1,0 +1,79 @@
+#pragma once
+// The iteration as launches: owns the device's buffers and kernels of one render and runs iterations of it.
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "render/flatten.h"
+#include "render/report.h"
+#include "render/settings.h"
+#include "vk/buffer.h"
+#include "vk/device.h"
+#include "vk/kernel.h"
+
+namespace vkcppm {
+
+class Integrator {
+public:
+    /// Uploads the scene, allocates the buffers, compiles the pipelines. `settings` must be resolved.
+    /// Throws Error(out_of_device_memory) where the scene or the picture does not fit the device.
+    Integrator(Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings);
+
+    /// Runs `count` iterations in one submission, or more where work had to be finished in further rounds.
+    /// Throws Error(device_lost), Error(internal) where a ray cannot be traced within the device's limits.
+    void run(std::uint32_t count);
+
+    std::uint32_t completed() const { return completed_; }
+
+    /// Mean over the completed iterations.
+    Image resolve();
+
+    /// Totals so far: passes, iterations, paths, photons, rays, device memory.
+    void fill(Report& report) const;
+
+    /// Contributions that were not finite and were dropped.
+    std::uint64_t invalid() const { return invalid_; }
+
+    /// For tests: a buffer by its binding (BIND_*).
+    Buffer& buffer(std::uint32_t binding) { return buffers_.at(binding); }
+    const gpu::Params& params() const { return params_; }
+
+private:
+    /// Passes of an iteration, in order. The first four can run out of steps and go on in another round.
+    enum class Pass { eye, photon, grid, knn, gather, update };
+
+    void allocate(std::uint32_t binding, const std::string& name, std::uint64_t bytes, Buffer::Kind kind);
+    void allocate_photons();
+    void compile(const Settings& settings, std::uint32_t features, std::uint32_t stack);
+    void iterate(std::uint32_t iteration, Pass from, std::uint32_t first_round);
+    void launch(const std::string& kernel, std::uint64_t invocations, const gpu::Launch& push);
+    void launch_rounds(const std::string& kernel, std::uint64_t invocations, Pass pass, std::uint32_t iteration,
+                       std::uint32_t first_round);
+    void build_grid(std::uint32_t iteration);
+    void scan(std::uint32_t iteration, std::uint32_t offset, std::uint32_t count);
+    void finish();
+    bool unblock();
+
+    Device& device_;
+    Bindings bindings_;
+    Commands commands_;
+    gpu::Params params_{};
+    std::map<std::uint32_t, Buffer> buffers_;
+    std::map<std::string, Kernel> kernels_;
+    std::map<Pass, std::uint32_t> rounds_;
+    std::vector<PassReport> passes_;
+    std::uint64_t pixels_ = 0;
+    std::uint32_t digit_bits_ = 7;
+    std::uint32_t digits_ = 3;             // radix passes
+    std::uint32_t completed_ = 0;
+    std::uint64_t rays_ = 0;
+    std::uint64_t stored_ = 0;
+    std::uint64_t invalid_ = 0;
+};
+
+}  // namespace vkcppm

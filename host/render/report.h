@@ -1,0 +1,32 @@
+#pragma once
+// What a render did: for --stats, the progress line and the EXR's attributes.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace vkcppm {
+
+/// One kind of pass. device_seconds by timestamps, summed over calls.
+struct PassReport {
+    std::string name;
+    std::uint64_t calls = 0;
+    double device_seconds = 0.0;
+};
+
+struct Report {
+    std::vector<PassReport> passes;         // in the order in which an iteration runs them
+    std::uint64_t iterations = 0;
+    std::uint64_t emitted_paths = 0;
+    std::uint64_t stored_photons = 0;
+    std::uint64_t rays = 0;                 // rays traced by eye and photon passes
+    double wall_seconds = 0.0;              // of the iterations: not loading, compiling, writing
+    double cpu_seconds = 0.0;               // user + system of this process, over the same span
+    double setup_seconds = 0.0;             // wall: BVH, upload, pipelines
+    std::uint64_t peak_memory_bytes = 0;    // resident set of the process
+    std::uint64_t device_memory_bytes = 0;  // allocated on the device
+    std::string device;                     // name
+    std::string driver;                     // name and version
+};
+
+}  // namespace vkcppm

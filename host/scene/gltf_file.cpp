@@ -1,0 +1,222 @@
+#include "scene/gltf_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+#include <fstream>
+#include <optional>
+#include <span>
+
+#include "scene/bad_scene.h"
+#include "scene/gltf_schema.h"
+#include "scene/uri.h"
+
+namespace vkcppm {
+
+namespace {
+
+using nlohmann::json;
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr std::size_t max_bytes = std::size_t(1) << 32;  // of the file, and of its buffers together; a .glb ends there
+constexpr int max_json_depth = 64;  // nlohmann and tinygltf recurse over the tree
+
+/// The first `limit` bytes of a regular file, or all; nothing, and why, where it fails. A pipe or a device could block.
+std::optional<Bytes> read_bytes(const std::filesystem::path& path, std::size_t limit, std::string& why) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status)) {
+        why = "no such file";
+        return std::nullopt;
+    }
+    if (!std::filesystem::is_regular_file(status)) {
+        why = "not a regular file";
+        return std::nullopt;
+    }
+    std::ifstream stream(path, std::ios::binary | std::ios::ate);
+    Bytes bytes(stream ? std::min(std::size_t(stream.tellg()), limit) : 0);
+    stream.seekg(0);
+    if (!stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()))) {
+        why = "cannot be read";
+        return std::nullopt;
+    }
+    return bytes;
+}
+
+void check_size(std::size_t size, std::string_view object, const std::string& file) {
+    if (size <= max_bytes) return;
+    bad_scene(file, object, fmt::to_string(size), fmt::format("the limit is {} bytes", max_bytes));
+}
+
+/// FNV-1a, 64 bits, continued from `hash` (Fowler, Noll, Vo; draft-eastlake-fnv).
+std::uint64_t fnv1a(std::span<const std::uint8_t> bytes, std::uint64_t hash) {
+    for (const std::uint8_t byte : bytes) hash = (hash ^ byte) * 0x100000001b3u;
+    return hash;
+}
+constexpr std::uint64_t fnv1a_start = 0xcbf29ce484222325u;
+
+/// What a file holds before its JSON is parsed: views into its bytes.
+struct Container {
+    std::span<const std::uint8_t> json;
+    std::optional<std::span<const std::uint8_t>> binary;  // the BIN chunk of a .glb
+};
+
+std::uint32_t read_u32(std::span<const std::uint8_t> bytes, std::size_t offset) {
+    return std::uint32_t(bytes[offset]) | std::uint32_t(bytes[offset + 1]) << 8 |
+           std::uint32_t(bytes[offset + 2]) << 16 | std::uint32_t(bytes[offset + 3]) << 24;
+}
+
+/// Splits a .glb (glTF 2.0, section 4: 12 bytes of header, then chunks of 8 bytes and their data).
+Container split_glb(std::span<const std::uint8_t> bytes, const std::string& file) {
+    constexpr std::size_t header_size = 12, chunk_header_size = 8;
+    constexpr std::uint32_t json_type = 0x4e4f534a, binary_type = 0x004e4942;
+    if (bytes.size() < header_size) {
+        bad_scene(file, "the size of the GLB", fmt::to_string(bytes.size()), "its header alone has 12 bytes");
+    }
+    if (const std::uint32_t version = read_u32(bytes, 4); version != 2) {
+        bad_scene(file, "the GLB version", fmt::to_string(version), "this program reads 2");
+    }
+    const std::uint32_t length = read_u32(bytes, 8);
+    if (length > bytes.size()) {
+        bad_scene(file, "the GLB length", fmt::to_string(length), fmt::format("the file has {} bytes", bytes.size()));
+    }
+    Container container;
+    std::size_t offset = header_size, chunk = 0;
+    for (; offset < length; ++chunk) {
+        const std::string object = fmt::format("GLB chunk {}", chunk);
+        if (length - offset < chunk_header_size) {
+            bad_scene(file, object, fmt::format("{} bytes", length - offset), "its header has 8");
+        }
+        const std::uint32_t size = read_u32(bytes, offset), type = read_u32(bytes, offset + 4);
+        offset += chunk_header_size;
+        if (size > length - offset) {
+            bad_scene(file, object + " length", fmt::to_string(size),
+                      fmt::format("{} bytes are left", length - offset));
+        }
+        if (size % 4 != 0) bad_scene(file, object + " length", fmt::to_string(size), "it must be a multiple of 4");
+        if ((chunk == 0) != (type == json_type)) {
+            bad_scene(file, object + " type", fmt::format("{:#010x}", type),
+                      fmt::format("the first chunk, and no other, is JSON ({:#010x})", json_type));
+        }
+        if (chunk == 0) container.json = bytes.subspan(offset, size);
+        if (chunk == 1 && type == binary_type) container.binary = bytes.subspan(offset, size);
+        offset += size;
+    }
+    if (chunk == 0) bad_scene(file, "the GLB length", fmt::to_string(length), "it has no JSON chunk");
+    return container;
+}
+
+Container split(std::span<const std::uint8_t> bytes, const std::string& file) {
+    const bool is_glb = bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
+    return is_glb ? split_glb(bytes, file) : Container{bytes, std::nullopt};
+}
+
+json parse_json(std::span<const std::uint8_t> text, const std::string& file) {
+    const auto limit_depth = [&](int depth, json::parse_event_t, json&) {
+        if (depth > max_json_depth) {
+            bad_scene(file, "the depth of the JSON", fmt::to_string(depth),
+                      fmt::format("the limit is {}", max_json_depth));
+        }
+        return true;
+    };
+    try {
+        return json::parse(text.begin(), text.end(), limit_depth);
+    } catch (const json::exception& error) {
+        std::string reason = error.what();
+        for (char& c : reason) {
+            if (std::iscntrl(static_cast<unsigned char>(c))) c = ' ';
+        }
+        bad_scene(file, "the file", "not glTF", reason);
+    }
+}
+
+void check_version(const json& document, const std::string& file) {
+    if (!document.is_object()) bad_scene(file, "the JSON", json_text(document), "it must be an object");
+    const json asset = document.value("asset", json());
+    const json version = asset.is_object() ? asset.value("version", json()) : json();
+    if (!version.is_string()) {
+        bad_scene(file, "asset.version", version.is_null() ? "missing" : json_text(version), "glTF requires \"2.0\"");
+    }
+    if (!version.get_ref<const std::string&>().starts_with("2.")) {
+        bad_scene(file, "asset.version", json_text(version), "this program reads \"2.0\"");
+    }
+    if (const json minimum = asset.value("minVersion", json("2.0")); minimum != "2.0") {
+        bad_scene(file, "asset.minVersion", json_text(minimum), "this program reads \"2.0\"");
+    }
+}
+
+/// The bytes that buffers[i] names, byteLength or as many as there are; nothing, and why, where there are none at all.
+/// An external file's go into `hash` as well.
+std::optional<Bytes> read_buffer(const json& buffer, std::size_t i,
+                                 const std::optional<std::span<const std::uint8_t>>& binary,
+                                 const std::filesystem::path& folder, const std::string& file, std::uint64_t& hash,
+                                 std::string& why) {
+    const std::string object = fmt::format("buffers[{}]", i);
+    const auto uri = buffer.find("uri");
+    if (uri == buffer.end()) {
+        if (i == 0 && binary) return Bytes(binary->begin(), binary->end());
+        why = "it has no uri, and the file no binary chunk for it";
+        return std::nullopt;
+    }
+    const std::string& text = uri->get_ref<const std::string&>();
+    if (is_data_uri(text)) {
+        std::optional<Bytes> bytes = decode_data_uri(text);
+        if (!bytes) {
+            bad_scene(file, object + ".uri", json_text(text.substr(0, 50)),
+                      "its data must be valid base64 or percent-encoded");
+        }
+        return bytes;
+    }
+    const std::optional<std::filesystem::path> path = resolve_uri(folder, text);
+    if (!path) {
+        bad_scene(file, object + ".uri", json_text(*uri), "it must be a relative path inside the scene's folder");
+    }
+    std::optional<Bytes> bytes = read_bytes(*path, buffer["byteLength"].get<std::size_t>(), why);
+    if (bytes) {
+        hash = fnv1a(*bytes, hash);
+    } else {
+        why = fmt::format("{}: {}", json_text(*uri), why);
+    }
+    return bytes;
+}
+
+}  // namespace
+
+GltfFile read_gltf_file(const std::filesystem::path& path) {
+    GltfFile file{.name = path.string(), .document = {}, .buffers = {}, .hash = fnv1a_start};
+    std::string why;
+    const std::optional<Bytes> bytes = read_bytes(path, max_bytes + 1, why);
+    if (!bytes) throw Error(ExitCode::no_input, fmt::format("{}: {}", file.name, why));
+    check_size(bytes->size(), "the size of the file", file.name);
+    file.hash = fnv1a(*bytes, file.hash);
+
+    const Container container = split(*bytes, file.name);
+    file.document = parse_json(container.json, file.name);
+    check_version(file.document, file.name);
+    if (const auto missing = unsupported_extensions(file.document, "extensionsRequired", file.name); !missing.empty()) {
+        bad_scene(file.name, "extensionsRequired", fmt::format("{}", fmt::join(missing, ", ")),
+                  "this program lacks it");
+    }
+    check_gltf_schema(file.document, file.name);
+
+    const json buffers = file.document.value("buffers", json::array());
+    std::size_t total_size = 0;
+    for (std::size_t i = 0; i < buffers.size(); ++i) {
+        GltfBuffer& buffer = file.buffers.emplace_back();
+        buffer.size = buffers[i]["byteLength"].get<std::size_t>();
+        total_size += buffer.size;
+        check_size(total_size, "the byteLength of the buffers together", file.name);
+        std::optional<Bytes> data = read_buffer(buffers[i], i, container.binary, path.parent_path(), file.name,
+                                                file.hash, buffer.absent);
+        if (!data) continue;
+        if (buffer.size > data->size()) {
+            bad_scene(file.name, fmt::format("buffers[{}].byteLength", i), fmt::to_string(buffer.size),
+                      fmt::format("its data has {} bytes", data->size()));
+        }
+        data->resize(buffer.size);
+        buffer.bytes = std::move(*data);
+    }
+    return file;
+}
+
+}  // namespace vkcppm

@@ -1,0 +1,31 @@
+#pragma once
+// A .gltf or .glb file with the buffers it names: bytes and checked JSON, before any meaning.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace vkcppm {
+
+struct GltfBuffer {
+    std::size_t size = 0;             // byteLength
+    std::vector<std::uint8_t> bytes;  // [size], or none where there is no such data
+    std::string absent;               // why there is none: an error once something is read from it
+};
+
+struct GltfFile {
+    std::string name;                 // the path as given, for messages
+    nlohmann::json document;          // passed check_gltf_schema
+    std::vector<GltfBuffer> buffers;  // as in the document
+    std::uint64_t hash = 0;           // FNV-1a of the file's bytes, then of each external buffer's
+};
+
+/// Reads the file, tells .gltf from .glb by its first bytes, and resolves every buffer: data URI, file beside it (never
+/// outside its folder), or the binary chunk. What no mesh needs, such as an animation's data, may be absent.
+/// Throws Error: no_input where the file is missing or unreadable, else bad_scene.
+GltfFile read_gltf_file(const std::filesystem::path& path);
+
+}  // namespace vkcppm

@@ -1,0 +1,152 @@
+#include "vk/buffer.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "vk/buffer_impl.h"
+
+namespace vkcppm {
+namespace {
+
+using Memory = vk::MemoryPropertyFlagBits;
+
+std::optional<std::uint32_t> memory_type(const vk::PhysicalDeviceMemoryProperties& memory, std::uint32_t allowed,
+                                         vk::MemoryPropertyFlags wanted) {
+    for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
+        if ((allowed >> i & 1) && (memory.memoryTypes[i].propertyFlags & wanted) == wanted) return i;
+    }
+    return std::nullopt;
+}
+
+vk::BufferUsageFlags usage_of(Buffer::Kind kind) {
+    using Usage = vk::BufferUsageFlagBits;
+    const vk::BufferUsageFlags transfer = Usage::eTransferSrc | Usage::eTransferDst;
+    switch (kind) {
+        case Buffer::Kind::uniform: return transfer | Usage::eUniformBuffer;
+        case Buffer::Kind::storage: return transfer | Usage::eStorageBuffer;
+        case Buffer::Kind::uint_texels: return transfer | Usage::eUniformTexelBuffer;
+        case Buffer::Kind::float_texels: return transfer | Usage::eUniformTexelBuffer | Usage::eStorageBuffer;
+    }
+    assert(false);
+    return transfer;
+}
+
+void check_limits(const Buffer::Impl& buffer, const vk::PhysicalDeviceLimits& limits) {
+    const auto refuse = [&](const char* what, std::uint64_t value, std::uint64_t limit) {
+        throw Error(ExitCode::out_of_device_memory,
+                    fmt::format("buffer '{}' needs {} {}, the device '{}' allows {}", buffer.name, value, what,
+                                buffer.device->info().name, limit));
+    };
+    const bool texels = buffer.kind == Buffer::Kind::uint_texels || buffer.kind == Buffer::Kind::float_texels;
+    if (texels && buffer.bytes / 16 > limits.maxTexelBufferElements) {
+        refuse("texels", buffer.bytes / 16, limits.maxTexelBufferElements);
+    }
+    if (buffer.kind != Buffer::Kind::uint_texels && buffer.bytes > limits.maxStorageBufferRange) {
+        refuse("bytes", buffer.bytes, limits.maxStorageBufferRange);
+    }
+}
+
+/// Device memory for `buffer`: device-local and mappable where there is such a type, else device-local.
+vk::raii::DeviceMemory allocate(Device::Impl& device, const vk::raii::Buffer& buffer, vk::MemoryPropertyFlags wanted,
+                                bool& mappable) {
+    const auto needed = buffer.getMemoryRequirements();
+    auto type = memory_type(device.memory, needed.memoryTypeBits, wanted | Memory::eHostVisible | Memory::eHostCoherent);
+    mappable = type.has_value();
+    if (!type) type = memory_type(device.memory, needed.memoryTypeBits, wanted);
+    if (!type) throw Error(ExitCode::internal, "the device has no memory type for buffers");
+    return vk::raii::DeviceMemory(*device.device, vk::MemoryAllocateInfo(needed.size, *type));
+}
+
+/// A mapped buffer for one transfer. `fill` runs with its memory; `copy` records the transfer.
+template <typename Before, typename Copy, typename After>
+void through_staging(Device& device, std::uint64_t bytes, Before before, Copy copy, After after) {
+    guarded("copying through a staging buffer", [&] {
+        auto& impl = device.impl();
+        vk::raii::Buffer staging(*impl.device, vk::BufferCreateInfo({}, bytes, vk::BufferUsageFlagBits::eTransferSrc |
+                                                                                   vk::BufferUsageFlagBits::eTransferDst));
+        bool mappable = false;
+        vk::raii::DeviceMemory memory = allocate(impl, staging, {}, mappable);
+        staging.bindMemory(*memory, 0);
+        auto* mapped = static_cast<std::byte*>(memory.mapMemory(0, bytes));
+        before(mapped);
+        run_once(device, "copying through a staging buffer",
+                 [&](vk::raii::CommandBuffer& commands) { copy(commands, *staging); });
+        after(mapped);
+    });
+}
+
+}  // namespace
+
+Buffer::Buffer(Device& device, std::string name, std::uint64_t bytes, Kind kind) : impl_(std::make_unique<Impl>()) {
+    Impl& impl = *impl_;
+    auto& gpu = device.impl();
+    impl.device = &device;
+    impl.name = std::move(name);
+    impl.bytes = (std::max<std::uint64_t>(bytes, 16) + 15) / 16 * 16;  // whole texels
+    impl.kind = kind;
+    check_limits(impl, gpu.limits);
+    guarded(fmt::format("allocating buffer '{}' of {} bytes ({} bytes are allocated)", impl.name, impl.bytes,
+                        gpu.allocated),
+            [&] {
+                impl.buffer.emplace(*gpu.device, vk::BufferCreateInfo({}, impl.bytes, usage_of(kind)));
+                bool mappable = false;
+                impl.memory.emplace(allocate(gpu, *impl.buffer, Memory::eDeviceLocal, mappable));
+                gpu.allocated += impl.bytes;
+                gpu.peak = std::max(gpu.peak, gpu.allocated);
+                impl.buffer->bindMemory(**impl.memory, 0);
+                if (mappable) impl.mapped = static_cast<std::byte*>(impl.memory->mapMemory(0, VK_WHOLE_SIZE));
+                if (kind == Kind::uint_texels || kind == Kind::float_texels) {
+                    const auto format = kind == Kind::uint_texels ? vk::Format::eR32G32B32A32Uint
+                                                                  : vk::Format::eR32G32B32A32Sfloat;
+                    impl.view.emplace(*gpu.device, vk::BufferViewCreateInfo({}, **impl.buffer, format, 0, VK_WHOLE_SIZE));
+                }
+            });
+    if (impl.mapped) {
+        std::memset(impl.mapped, 0, impl.bytes);
+    } else {
+        run_once(device, "clearing a buffer", [&](vk::raii::CommandBuffer& commands) {
+            commands.fillBuffer(**impl.buffer, 0, VK_WHOLE_SIZE, 0);
+        });
+    }
+}
+
+Buffer::~Buffer() = default;
+Buffer::Buffer(Buffer&&) noexcept = default;
+Buffer& Buffer::operator=(Buffer&&) noexcept = default;
+
+std::uint64_t Buffer::bytes() const { return impl_->bytes; }
+
+void Buffer::write(std::span<const std::byte> data) {
+    assert(data.size() <= impl_->bytes);
+    if (data.empty()) return;
+    if (impl_->mapped) {
+        std::memcpy(impl_->mapped, data.data(), data.size());
+        return;
+    }
+    through_staging(
+        *impl_->device, data.size(), [&](std::byte* memory) { std::memcpy(memory, data.data(), data.size()); },
+        [&](vk::raii::CommandBuffer& commands, vk::Buffer staging) {
+            commands.copyBuffer(staging, **impl_->buffer, vk::BufferCopy(0, 0, data.size()));
+        },
+        [](std::byte*) {});
+}
+
+void Buffer::read(std::span<std::byte> data) const {
+    assert(data.size() <= impl_->bytes);
+    if (data.empty()) return;
+    if (impl_->mapped) {
+        std::memcpy(data.data(), impl_->mapped, data.size());
+        return;
+    }
+    through_staging(
+        *impl_->device, data.size(), [](std::byte*) {},
+        [&](vk::raii::CommandBuffer& commands, vk::Buffer staging) {
+            commands.copyBuffer(**impl_->buffer, staging, vk::BufferCopy(0, 0, data.size()));
+        },
+        [&](const std::byte* memory) { std::memcpy(data.data(), memory, data.size()); });
+}
+
+}  // namespace vkcppm

@@ -1,0 +1,68 @@
+#pragma once
+// Device memory with a name. Data goes in and out by value; where the memory is not mappable, through a staging copy.
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace vkcppm {
+
+class Device;
+
+class Buffer {
+public:
+    enum class Kind {
+        uniform,
+        storage,
+        uint_texels,   // read as RGBA32UI texels
+        float_texels,  // read as RGBA32F texels, and as storage
+    };
+
+    /// At least `bytes` bytes of zeros (an empty buffer holds 16). Throws Error(out_of_device_memory) with the name,
+    /// the size and the limit where it is larger than the device allows or than there is memory for.
+    Buffer(Device& device, std::string name, std::uint64_t bytes, Kind kind);
+    ~Buffer();
+    Buffer(Buffer&&) noexcept;
+    Buffer& operator=(Buffer&&) noexcept;
+
+    std::uint64_t bytes() const;
+
+    /// Writes `data` at the start. Asserts that it fits. The device must be idle.
+    template <typename T>
+    void upload(std::span<const T> data) {
+        write(std::as_bytes(data));
+    }
+    template <typename T>
+    void upload(const std::vector<T>& data) {
+        upload(std::span<const T>(data));
+    }
+    template <typename T>
+    void upload_value(const T& value) {
+        write(std::as_bytes(std::span<const T>(&value, 1)));
+    }
+
+    /// Reads `count` values from the start. Asserts that there are as many. The device must be idle.
+    template <typename T>
+    std::vector<T> download(std::size_t count) const {
+        std::vector<T> data(count);
+        read(std::as_writable_bytes(std::span<T>(data)));
+        return data;
+    }
+    template <typename T>
+    T download_value() const {
+        return download<T>(1).front();
+    }
+
+    struct Impl;
+    const Impl& impl() const { return *impl_; }
+
+private:
+    void write(std::span<const std::byte> data);
+    void read(std::span<std::byte> data) const;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vkcppm

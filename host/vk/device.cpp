@@ -1,0 +1,263 @@
+#include "vk/device.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "shared/bindings.h"
+#include "shared/types.h"
+#include "vk/vulkan.h"
+
+namespace vkcppm {
+namespace {
+
+constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
+
+vk::raii::Instance make_instance(const vk::raii::Context& context, bool validate) {
+    vk::ApplicationInfo application("vkcppm", 1, nullptr, 0, VK_API_VERSION_1_2);
+    std::vector<const char*> layers, extensions;
+    const vk::ValidationFeatureEnableEXT enable = vk::ValidationFeatureEnableEXT::eSynchronizationValidation;
+    const vk::ValidationFeaturesEXT features(enable);
+    vk::InstanceCreateInfo info({}, &application);
+    if (validate) {
+        layers.push_back(validation_layer);
+        extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+        info.pNext = &features;
+    }
+    info.setPEnabledLayerNames(layers).setPEnabledExtensionNames(extensions);
+    return vk::raii::Instance(context, info);
+}
+
+std::string type_name(vk::PhysicalDeviceType type) {
+    switch (type) {
+        case vk::PhysicalDeviceType::eDiscreteGpu: return "discrete";
+        case vk::PhysicalDeviceType::eIntegratedGpu: return "integrated";
+        case vk::PhysicalDeviceType::eVirtualGpu: return "virtual";
+        case vk::PhysicalDeviceType::eCpu: return "cpu";
+        default: return "other";
+    }
+}
+
+int preference(const DeviceInfo& info) {
+    const std::vector<std::string> order = {"discrete", "integrated", "virtual", "other", "cpu"};
+    return int(std::find(order.begin(), order.end(), info.type) - order.begin());
+}
+
+std::optional<std::uint32_t> compute_family(const vk::raii::PhysicalDevice& physical) {
+    const auto families = physical.getQueueFamilyProperties();
+    for (std::uint32_t i = 0; i < families.size(); ++i) {
+        if ((families[i].queueFlags & vk::QueueFlagBits::eCompute) && families[i].timestampValidBits > 0) return i;
+    }
+    return std::nullopt;
+}
+
+/// Why the kernels cannot run there, or empty.
+std::string missing(const vk::raii::PhysicalDevice& physical) {
+    const auto properties = physical.getProperties();
+    const auto& limits = properties.limits;
+    if (properties.apiVersion < VK_API_VERSION_1_2) return "Vulkan 1.2 is needed";
+    const auto chain = physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
+    if (!chain.get<vk::PhysicalDeviceVulkan12Features>().scalarBlockLayout) return "scalarBlockLayout is needed";
+    if (!compute_family(physical)) return "no compute queue with timestamps";
+    const std::uint32_t storage = BIND_COUNT - BIND_FIRST_STORAGE;
+    if (std::min(limits.maxPerStageDescriptorStorageBuffers, limits.maxDescriptorSetStorageBuffers) < storage) {
+        return fmt::format("{} storage buffers a stage, {} are needed", limits.maxPerStageDescriptorStorageBuffers,
+                           storage);
+    }
+    if (limits.maxPushConstantsSize < sizeof(gpu::Launch)) return "push constants are too small";
+    return "";
+}
+
+std::string uuid_text(const vk::ArrayWrapper1D<uint8_t, VK_UUID_SIZE>& uuid) {
+    std::string text;
+    for (std::size_t i = 0; i < VK_UUID_SIZE; ++i) {
+        if (i == 4 || i == 6 || i == 8 || i == 10) text += '-';
+        text += fmt::format("{:02x}", uuid[i]);
+    }
+    return text;
+}
+
+DeviceInfo describe(const vk::raii::PhysicalDevice& physical, std::uint32_t index) {
+    const auto chain = physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceIDProperties,
+                                               vk::PhysicalDeviceDriverProperties>();
+    const auto& properties = chain.get<vk::PhysicalDeviceProperties2>().properties;
+    const auto& driver = chain.get<vk::PhysicalDeviceDriverProperties>();
+    DeviceInfo info;
+    info.index = index;
+    info.name = properties.deviceName.data();
+    info.type = type_name(properties.deviceType);
+    info.driver = fmt::format("{} {}", driver.driverName.data(), driver.driverInfo.data());
+    info.api_version = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(properties.apiVersion),
+                                   VK_API_VERSION_MINOR(properties.apiVersion),
+                                   VK_API_VERSION_PATCH(properties.apiVersion));
+    info.uuid = uuid_text(chain.get<vk::PhysicalDeviceIDProperties>().deviceUUID);
+    const auto memory = physical.getMemoryProperties();
+    for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
+        if (memory.memoryHeaps[i].flags & vk::MemoryHeapFlagBits::eDeviceLocal) {
+            info.memory_bytes = std::max<std::uint64_t>(info.memory_bytes, memory.memoryHeaps[i].size);
+        }
+    }
+    info.unusable = missing(physical);
+    return info;
+}
+
+/// Physical devices with their descriptions; none where there is no driver.
+std::vector<std::pair<vk::raii::PhysicalDevice, DeviceInfo>> enumerate(const vk::raii::Instance& instance) {
+    std::vector<std::pair<vk::raii::PhysicalDevice, DeviceInfo>> found;
+    try {
+        vk::raii::PhysicalDevices all(instance);
+        for (std::uint32_t i = 0; i < all.size(); ++i) {
+            DeviceInfo info = describe(all[i], i);
+            found.emplace_back(std::move(all[i]), std::move(info));
+        }
+    } catch (const vk::SystemError&) {
+        // A loader without a driver answers with an error: that is a machine without devices.
+    }
+    return found;
+}
+
+bool matches(const DeviceInfo& info, const std::string& select) {
+    if (select.starts_with("uuid:")) return info.uuid == select.substr(5);
+    std::uint32_t index = 0;
+    const auto [end, error] = std::from_chars(select.data(), select.data() + select.size(), index);
+    if (error == std::errc() && end == select.data() + select.size()) return info.index == index;
+    return info.name.find(select) != std::string::npos;
+}
+
+VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+    auto& impl = *static_cast<Device::Impl*>(user);
+    std::lock_guard lock(impl.messages_mutex);
+    impl.messages.emplace_back(data->pMessage);
+    return VK_FALSE;
+}
+
+}  // namespace
+
+void guarded(const std::string& doing, const std::function<void()>& work) {
+    try {
+        work();
+    } catch (const vk::DeviceLostError&) {
+        throw Error(ExitCode::device_lost, fmt::format("the device was lost while {}", doing));
+    } catch (const vk::OutOfDeviceMemoryError&) {
+        throw Error(ExitCode::out_of_device_memory, fmt::format("out of device memory while {}", doing));
+    } catch (const vk::OutOfHostMemoryError&) {
+        throw Error(ExitCode::out_of_device_memory, fmt::format("out of host memory while {}", doing));
+    } catch (const vk::SystemError& error) {
+        throw Error(ExitCode::internal, fmt::format("Vulkan failed while {}: {}", doing, error.what()));
+    }
+}
+
+void run_once(Device& device, const std::string& doing, const std::function<void(vk::raii::CommandBuffer&)>& record) {
+    guarded(doing, [&] {
+        auto& impl = device.impl();
+        vk::raii::CommandBuffers buffers(*impl.device, {**impl.pool, vk::CommandBufferLevel::ePrimary, 1});
+        auto& commands = buffers.front();
+        commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+        record(commands);
+        commands.end();
+        vk::raii::Fence fence(*impl.device, vk::FenceCreateInfo());
+        const vk::CommandBuffer raw = *commands;
+        impl.queue->submit(vk::SubmitInfo({}, {}, raw), *fence);
+        if (impl.device->waitForFences(*fence, true, UINT64_MAX) != vk::Result::eSuccess) {
+            throw Error(ExitCode::device_lost, fmt::format("the device did not finish while {}", doing));
+        }
+    });
+}
+
+std::vector<DeviceInfo> list_devices() {
+    std::vector<DeviceInfo> list;
+    try {
+        vk::raii::Context context;
+        const vk::raii::Instance instance = make_instance(context, false);
+        for (auto& [physical, info] : enumerate(instance)) list.push_back(info);
+    } catch (const std::exception&) {
+        // No Vulkan loader: no devices.
+    }
+    return list;
+}
+
+Device::Device(const Options& options) : impl_(std::make_unique<Impl>()) {
+    Impl& impl = *impl_;
+    try {
+        impl.instance.emplace(make_instance(impl.context, options.validate));
+    } catch (const vk::LayerNotPresentError&) {
+        throw Error(ExitCode::no_device, fmt::format("validation was asked for but {} is not installed",
+                                                     validation_layer));
+    } catch (const vk::SystemError& error) {
+        throw Error(ExitCode::no_device, fmt::format("no Vulkan instance: {}", error.what()));
+    }
+    if (options.validate) {
+        using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
+        using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
+        impl.messenger.emplace(*impl.instance,
+                               vk::DebugUtilsMessengerCreateInfoEXT({}, Severity::eWarning | Severity::eError,
+                                                                    Type::eValidation | Type::ePerformance,
+                                                                    on_message, &impl));
+    }
+
+    auto devices = enumerate(*impl.instance);
+    std::vector<std::string> names;
+    for (const auto& [physical, info] : devices) {
+        names.push_back(info.unusable.empty() ? fmt::format("{} '{}'", info.index, info.name)
+                                              : fmt::format("{} '{}' (unusable: {})", info.index, info.name, info.unusable));
+    }
+    std::erase_if(devices, [&](const auto& device) {
+        return !device.second.unusable.empty() || (!options.select.empty() && !matches(device.second, options.select));
+    });
+    if (devices.empty()) {
+        const std::string wanted = options.select.empty() ? "" : fmt::format(" that matches '{}'", options.select);
+        throw Error(ExitCode::no_device, fmt::format("no usable Vulkan device{}; there are: {}", wanted,
+                                                     names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+    }
+    auto best = std::min_element(devices.begin(), devices.end(), [](const auto& a, const auto& b) {
+        return preference(a.second) < preference(b.second);
+    });
+    impl.physical.emplace(std::move(best->first));
+    impl.info = best->second;
+
+    const auto chain = impl.physical->getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupProperties,
+                                                     vk::PhysicalDeviceDriverProperties>();
+    impl.limits = chain.get<vk::PhysicalDeviceProperties2>().properties.limits;
+    impl.subgroup_size = chain.get<vk::PhysicalDeviceSubgroupProperties>().subgroupSize;
+    impl.loop_limit = chain.get<vk::PhysicalDeviceDriverProperties>().driverID == vk::DriverId::eMesaLlvmpipe;
+    impl.memory = impl.physical->getMemoryProperties();
+
+    guarded("creating the device", [&] {
+        const std::uint32_t family = *compute_family(*impl.physical);
+        const float priority = 1.0f;
+        const vk::DeviceQueueCreateInfo queue({}, family, 1, &priority);
+        vk::PhysicalDeviceVulkan12Features features;
+        features.scalarBlockLayout = true;
+        vk::DeviceCreateInfo info({}, queue);
+        info.pNext = &features;
+        impl.device.emplace(*impl.physical, info);
+        impl.queue.emplace(*impl.device, family, 0);
+        impl.pool.emplace(*impl.device, vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, family));
+    });
+}
+
+Device::~Device() = default;
+
+const DeviceInfo& Device::info() const { return impl_->info; }
+
+std::vector<std::string> Device::validation_messages() const {
+    std::lock_guard lock(impl_->messages_mutex);
+    return impl_->messages;
+}
+
+bool Device::validating() const { return impl_->messenger.has_value(); }
+
+std::uint32_t Device::step_budget() const {
+    // llvmpipe of Mesa 22.3 ends every loop, in silence, once the loops of a SIMD group have made 65,535 trips in all.
+    // A group's trips are at most the sum over its lanes; a kernel may overdraw its budget by a few hundred.
+    return impl_->loop_limit ? 65535 / impl_->subgroup_size - 1024 : 1u << 20;
+}
+
+std::uint64_t Device::allocated_bytes() const { return impl_->allocated; }
+std::uint64_t Device::peak_bytes() const { return impl_->peak; }
+
+}  // namespace vkcppm

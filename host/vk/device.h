@@ -1,0 +1,56 @@
+#pragma once
+// A Vulkan device with one compute queue, opaque to everything outside host/vk.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace vkcppm {
+
+/// One physical device, as `vkcppm devices` lists it.
+struct DeviceInfo {
+    std::uint32_t index = 0;
+    std::string name;
+    std::string type;             // "cpu", "integrated", "discrete", "virtual", "other"
+    std::string driver;           // name and version
+    std::string api_version;      // "1.3.230"
+    std::string uuid;             // 32 hexadecimal digits in 8-4-4-4-12 form
+    std::uint64_t memory_bytes = 0;  // largest device-local heap
+    std::string unusable;         // empty, or why the device cannot run the kernels
+};
+
+/// All devices of all drivers, usable or not; empty where there is no Vulkan loader or driver.
+std::vector<DeviceInfo> list_devices();
+
+class Device {
+public:
+    struct Options {
+        std::string select;       // name (substring), index or "uuid:..."; empty: the fastest kind that is usable
+        bool validate = false;    // load the validation layer with synchronization checks; its errors are collected
+    };
+    /// Throws Error(no_device) where none is usable or none matches, with the devices that there are.
+    explicit Device(const Options& options);
+    ~Device();
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+
+    const DeviceInfo& info() const;
+    /// Messages of the validation layer so far, errors and warnings; empty where it is not loaded.
+    std::vector<std::string> validation_messages() const;
+    /// True where the validation layer was asked for and is loaded.
+    bool validating() const;
+    /// Loop trips that one invocation may make in one dispatch, with certainty within the driver's limits.
+    std::uint32_t step_budget() const;
+    /// Bytes of buffers alive now, and at most so far.
+    std::uint64_t allocated_bytes() const;
+    std::uint64_t peak_bytes() const;
+
+    struct Impl;
+    Impl& impl() { return *impl_; }
+
+private:
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vkcppm

@@ -1,0 +1,193 @@
+#include "vk/kernel.h"
+
+#include <array>
+#include <cassert>
+
+#include <fmt/format.h>
+
+#include "shared/bindings.h"
+#include "vk/buffer_impl.h"
+#include "vk/vulkan.h"
+
+namespace vkcppm {
+namespace {
+
+vk::DescriptorType descriptor_type(std::uint32_t binding) {
+    if (binding < BIND_FIRST_TEXEL) return vk::DescriptorType::eUniformBuffer;
+    return binding < BIND_FIRST_STORAGE ? vk::DescriptorType::eUniformTexelBuffer : vk::DescriptorType::eStorageBuffer;
+}
+
+}  // namespace
+
+struct Bindings::Impl {
+    Device* device = nullptr;
+    std::optional<vk::raii::DescriptorSetLayout> set_layout;
+    std::optional<vk::raii::PipelineLayout> layout;
+    std::optional<vk::raii::DescriptorPool> pool;
+    std::optional<vk::raii::DescriptorSet> set;
+};
+
+Bindings::Bindings(Device& device) : impl_(std::make_unique<Impl>()) {
+    guarded("creating the descriptor set", [&] {
+        auto& gpu = *device.impl().device;
+        impl_->device = &device;
+        std::vector<vk::DescriptorSetLayoutBinding> bindings;
+        for (std::uint32_t i = 0; i < BIND_COUNT; ++i) {
+            bindings.emplace_back(i, descriptor_type(i), 1, vk::ShaderStageFlagBits::eCompute);
+        }
+        impl_->set_layout.emplace(gpu, vk::DescriptorSetLayoutCreateInfo({}, bindings));
+        const vk::PushConstantRange push(vk::ShaderStageFlagBits::eCompute, 0, sizeof(gpu::Launch));
+        const vk::DescriptorSetLayout set_layout = **impl_->set_layout;
+        impl_->layout.emplace(gpu, vk::PipelineLayoutCreateInfo({}, set_layout, push));
+        const std::array sizes = {
+            vk::DescriptorPoolSize(vk::DescriptorType::eUniformBuffer, BIND_FIRST_TEXEL),
+            vk::DescriptorPoolSize(vk::DescriptorType::eUniformTexelBuffer, BIND_FIRST_STORAGE - BIND_FIRST_TEXEL),
+            vk::DescriptorPoolSize(vk::DescriptorType::eStorageBuffer, BIND_COUNT - BIND_FIRST_STORAGE)};
+        impl_->pool.emplace(gpu, vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes));
+        vk::raii::DescriptorSets sets(gpu, vk::DescriptorSetAllocateInfo(**impl_->pool, set_layout));
+        impl_->set.emplace(std::move(sets.front()));
+    });
+}
+
+Bindings::~Bindings() = default;
+
+void Bindings::bind(std::uint32_t binding, const Buffer& buffer) {
+    const auto& source = buffer.impl();
+    const vk::DescriptorType type = descriptor_type(binding);
+    const vk::DescriptorBufferInfo info(**source.buffer, 0, VK_WHOLE_SIZE);
+    vk::WriteDescriptorSet write(**impl_->set, binding, 0, 1, type, nullptr, &info);
+    vk::BufferView view;
+    if (type == vk::DescriptorType::eUniformTexelBuffer) {
+        assert(source.view);
+        view = **source.view;
+        write.setPTexelBufferView(&view);
+        write.setPBufferInfo(nullptr);
+    }
+    impl_->device->impl().device->updateDescriptorSets(write, {});
+}
+
+struct Kernel::Impl {
+    std::string name;
+    std::uint32_t workgroup = 64;
+    std::optional<vk::raii::Pipeline> pipeline;
+};
+
+Kernel::Kernel(Device& device, const Bindings& bindings, std::string name, std::span<const std::uint32_t> spirv,
+               const Specialization& specialization)
+    : impl_(std::make_unique<Impl>()) {
+    impl_->name = std::move(name);
+    impl_->workgroup = specialization.at(SPEC_WORKGROUP);
+    guarded(fmt::format("creating kernel '{}'", impl_->name), [&] {
+        auto& gpu = *device.impl().device;
+        const vk::raii::ShaderModule module(gpu, vk::ShaderModuleCreateInfo({}, spirv.size_bytes(), spirv.data()));
+        std::vector<vk::SpecializationMapEntry> entries;
+        std::vector<std::uint32_t> values;
+        for (const auto& [id, value] : specialization) {
+            entries.emplace_back(id, std::uint32_t(values.size() * sizeof(value)), sizeof(value));
+            values.push_back(value);
+        }
+        const vk::SpecializationInfo info(std::uint32_t(entries.size()), entries.data(),
+                                          values.size() * sizeof(values[0]), values.data());
+        const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &info);
+        impl_->pipeline.emplace(gpu, nullptr,
+                                vk::ComputePipelineCreateInfo({}, stage, **bindings.impl().layout));
+    });
+}
+
+Kernel::~Kernel() = default;
+Kernel::Kernel(Kernel&&) noexcept = default;
+Kernel& Kernel::operator=(Kernel&&) noexcept = default;
+
+const std::string& Kernel::name() const { return impl_->name; }
+
+struct Commands::Impl {
+    Device* device = nullptr;
+    const Bindings* bindings = nullptr;
+    std::uint32_t capacity = 0;
+    std::optional<vk::raii::CommandBuffer> commands;
+    std::optional<vk::raii::QueryPool> queries;
+    std::optional<vk::raii::Fence> fence;
+    std::vector<const Kernel*> timed;
+};
+
+Commands::Commands(Device& device, const Bindings& bindings, std::uint32_t capacity)
+    : impl_(std::make_unique<Impl>()) {
+    guarded("creating a command buffer", [&] {
+        auto& gpu = device.impl();
+        impl_->device = &device;
+        impl_->bindings = &bindings;
+        impl_->capacity = capacity;
+        vk::raii::CommandBuffers buffers(*gpu.device, {**gpu.pool, vk::CommandBufferLevel::ePrimary, 1});
+        impl_->commands.emplace(std::move(buffers.front()));
+        impl_->queries.emplace(*gpu.device, vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, 2 * capacity));
+        impl_->fence.emplace(*gpu.device, vk::FenceCreateInfo());
+    });
+}
+
+Commands::~Commands() = default;
+
+void Commands::begin() {
+    guarded("recording commands", [&] {
+        impl_->timed.clear();
+        impl_->commands->reset();
+        impl_->commands->begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+        impl_->commands->resetQueryPool(**impl_->queries, 0, 2 * impl_->capacity);
+        const vk::DescriptorSet set = **impl_->bindings->impl().set;
+        impl_->commands->bindDescriptorSets(vk::PipelineBindPoint::eCompute, **impl_->bindings->impl().layout, 0, set, {});
+    });
+}
+
+void Commands::launch(const Kernel& kernel, std::uint64_t invocations, const gpu::Launch& push) {
+    auto& commands = *impl_->commands;
+    const std::uint64_t groups = (invocations + kernel.impl().workgroup - 1) / kernel.impl().workgroup;
+    const std::uint64_t limit = impl_->device->impl().limits.maxComputeWorkGroupCount[0];
+    const std::uint64_t rows = (groups + limit - 1) / limit;
+    assert(groups > 0 && rows <= impl_->device->impl().limits.maxComputeWorkGroupCount[1]);
+    const bool timed = impl_->timed.size() < impl_->capacity;
+    const std::uint32_t query = 2 * std::uint32_t(impl_->timed.size());
+    using Stage = vk::PipelineStageFlagBits;
+    using Access = vk::AccessFlagBits;
+
+    commands.bindPipeline(vk::PipelineBindPoint::eCompute, **kernel.impl().pipeline);
+    commands.pushConstants<gpu::Launch>(**impl_->bindings->impl().layout, vk::ShaderStageFlagBits::eCompute, 0, push);
+    if (timed) commands.writeTimestamp(Stage::eTopOfPipe, **impl_->queries, query);
+    commands.dispatch(std::uint32_t((groups + rows - 1) / rows), std::uint32_t(rows), 1);
+    const vk::MemoryBarrier barrier(Access::eShaderWrite, Access::eShaderRead | Access::eShaderWrite);
+    commands.pipelineBarrier(Stage::eComputeShader, Stage::eComputeShader, {}, barrier, {}, {});
+    if (timed) {
+        commands.writeTimestamp(Stage::eComputeShader, **impl_->queries, query + 1);
+        impl_->timed.push_back(&kernel);
+    }
+}
+
+std::vector<Timing> Commands::finish() {
+    std::vector<Timing> timings;
+    guarded("running kernels", [&] {
+        auto& gpu = impl_->device->impl();
+        // Everything is read by the host next.
+        const vk::MemoryBarrier barrier(vk::AccessFlagBits::eShaderWrite,
+                                        vk::AccessFlagBits::eHostRead | vk::AccessFlagBits::eTransferRead);
+        impl_->commands->pipelineBarrier(vk::PipelineStageFlagBits::eComputeShader,
+                                         vk::PipelineStageFlagBits::eHost | vk::PipelineStageFlagBits::eTransfer, {},
+                                         barrier, {}, {});
+        impl_->commands->end();
+        const vk::CommandBuffer raw = **impl_->commands;
+        gpu.queue->submit(vk::SubmitInfo({}, {}, raw), **impl_->fence);
+        if (gpu.device->waitForFences(**impl_->fence, true, UINT64_MAX) != vk::Result::eSuccess) {
+            throw Error(ExitCode::device_lost, "the device did not finish its kernels");
+        }
+        gpu.device->resetFences(**impl_->fence);
+        const std::uint32_t count = 2 * std::uint32_t(impl_->timed.size());
+        if (count == 0) return;
+        const auto [result, stamps] = impl_->queries->getResults<std::uint64_t>(
+            0, count, count * sizeof(std::uint64_t), sizeof(std::uint64_t),
+            vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+        for (std::size_t i = 0; i < impl_->timed.size(); ++i) {
+            const double ticks = double(stamps[2 * i + 1] - stamps[2 * i]);
+            timings.push_back({impl_->timed[i], ticks * gpu.limits.timestampPeriod * 1e-9});
+        }
+    });
+    return timings;
+}
+
+}  // namespace vkcppm

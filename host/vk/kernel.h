@@ -1,0 +1,83 @@
+#pragma once
+// Compute pipelines over the one descriptor set of shaders/shared/bindings.h, and launches of them.
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "shared/types.h"
+#include "vk/buffer.h"
+
+namespace vkcppm {
+
+class Device;
+
+/// The descriptor set: which buffer stands at which binding (BIND_*). Rebinding needs an idle device.
+class Bindings {
+public:
+    explicit Bindings(Device& device);
+    ~Bindings();
+    Bindings(const Bindings&) = delete;
+    Bindings& operator=(const Bindings&) = delete;
+
+    /// Asserts that the kind of the buffer fits the binding. The buffer must outlive every launch.
+    void bind(std::uint32_t binding, const Buffer& buffer);
+
+    struct Impl;
+    Impl& impl() const { return *impl_; }
+
+private:
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Values of specialization constants by id (SPEC_*).
+using Specialization = std::map<std::uint32_t, std::uint32_t>;
+
+class Kernel {
+public:
+    /// `spirv` is a module of shaders/kernels or tests/kernels. `specialization` must hold SPEC_WORKGROUP.
+    Kernel(Device& device, const Bindings& bindings, std::string name, std::span<const std::uint32_t> spirv,
+           const Specialization& specialization);
+    ~Kernel();
+    Kernel(Kernel&&) noexcept;
+    Kernel& operator=(Kernel&&) noexcept;
+
+    const std::string& name() const;
+
+    struct Impl;
+    const Impl& impl() const { return *impl_; }
+
+private:
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Device time of one launch of a kernel, by timestamps.
+struct Timing {
+    const Kernel* kernel = nullptr;
+    double seconds = 0.0;
+};
+
+/// A sequence of launches, each after the one before it is done and visible.
+class Commands {
+public:
+    /// At most `capacity` launches can be timed; more are launched untimed.
+    Commands(Device& device, const Bindings& bindings, std::uint32_t capacity);
+    ~Commands();
+    Commands(const Commands&) = delete;
+    Commands& operator=(const Commands&) = delete;
+
+    void begin();
+    /// At least `invocations` invocations in whole work groups, folded into y beyond 65,535 groups.
+    void launch(const Kernel& kernel, std::uint64_t invocations, const gpu::Launch& push);
+    /// Submits what was recorded since begin() and waits for it. Throws Error(device_lost).
+    std::vector<Timing> finish();
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vkcppm

@@ -1,0 +1,33 @@
+// What every kernel starts with: shared types, specialization constants, the launch block, buffers.
+#extension GL_GOOGLE_include_directive : require
+#include "shared/types.h"
+#include "shared/estimators.h"
+#include "shared/bindings.h"
+
+layout(local_size_x_id = SPEC_WORKGROUP) in;
+layout(constant_id = SPEC_STACK) const uint STACK = 32;
+layout(constant_id = SPEC_ESTIMATOR) const uint ESTIMATOR = ESTIMATOR_CPPM;
+layout(constant_id = SPEC_RINGS) const uint RINGS = 2;
+layout(constant_id = SPEC_SECTORS) const uint SECTORS = 6;
+layout(constant_id = SPEC_FEATURES) const uint FEATURES = 0xffffffffu;
+layout(constant_id = SPEC_DIGIT_BITS) const uint DIGIT_BITS = 7;
+
+layout(push_constant, scalar) uniform LaunchBlock { Launch launch; };
+layout(binding = BIND_PARAMS, scalar) uniform ParamsBlock { Params params; };
+layout(binding = BIND_STATUS, scalar) buffer StatusBlock { Status status; };
+
+// Index of this invocation; the host folds dispatches of more than 65,535 groups into y.
+uint invocation() {
+    return (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
+}
+
+// True where this launch must leave everything as it is: another pass than `own` (PASS_* bits) waits for the host, or
+// an iteration before this one does.
+bool blocked(uint own) { return (status.blocked & ~own) != 0u || status.completed != launch.iteration; }
+
+// Unfinished work of pass `own` in its last round blocks the passes after it; lanes of the same pass go on.
+void block_after(uint own) {
+    if (launch.last_round != 0u) atomicOr(status.blocked, own);
+}
+
+uint pixel_count() { return params.width * params.height; }

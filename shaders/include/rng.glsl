@@ -1,0 +1,44 @@
+// Counter-based random numbers: a pure function of (seed, iteration, stream, path, dimension), so that the same seed
+// gives the same bits in any order of execution. PCG4D: Jarzynski and Olano, "Hash Functions for GPU Rendering",
+// JCGT 9(3), 2020.
+
+#define STREAM_EYE 0u
+#define STREAM_PHOTON 1u
+#define STREAM_GATHER 2u
+#define STREAM_SHIFT 3u
+#define STREAMS 4u
+
+uvec4 pcg4d(uvec4 v) {
+    v = v * 1664525u + 1013904223u;
+    v.x += v.y * v.w;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v.w += v.y * v.z;
+    v ^= v >> 16u;
+    v.x += v.y * v.w;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v.w += v.y * v.z;
+    return v;
+}
+
+// Four numbers in [0, 1), 24 bits each. `path` is a pixel or light path, `dimension` a bounce.
+vec4 random4(uint seed, uint iteration, uint stream, uint path, uint dimension) {
+    uvec4 bits = pcg4d(uvec4(path, dimension, iteration * STREAMS + stream, seed));
+    return vec4(bits >> 8u) * 5.9604644775390625e-8;
+}
+
+// Dimensions of an eye path that are stratified over the iterations of a pixel.
+#define STRATIFIED_DIMENSIONS 8u
+
+// Additive recurrences modulo 1: the fractional parts of powers of the plastic number, then of square roots of primes,
+// times 2^32. Rationally independent, so the dimensions are equidistributed together (Weyl 1916).
+const uint RECURRENCE[STRATIFIED_DIMENSIONS] = uint[](0xc13fa9a9u, 0x91e10da5u, 0x6a09e667u, 0xbb67ae85u, 0x3c6ef372u, 0xa54ff53au, 0x510e527fu, 0x9b05688cu);
+
+// A number in [0, 1) for dimension `dimension` of the eye path of `pixel`: over the iterations a low-discrepancy
+// sequence, shifted at random for every pixel and dimension; independent numbers beyond the stratified dimensions.
+float stratified(uint seed, uint iteration, uint pixel, uint dimension) {
+    if (dimension >= STRATIFIED_DIMENSIONS) return random4(seed, iteration, STREAM_EYE, pixel, dimension).x;
+    uint shift = pcg4d(uvec4(pixel, dimension, STREAM_SHIFT, seed)).x;
+    return float((shift + iteration * RECURRENCE[dimension]) >> 8u) * 5.9604644775390625e-8;
+}

@@ -1,0 +1,73 @@
+// A resumable walk over the photons of the cells that a ball touches, segment of a row by segment. Reads the grid, the
+// cell starts and the sorted photons.
+layout(binding = BIND_COUNTERS, scalar) readonly buffer CounterBlock { uint counters[]; };
+layout(binding = BIND_SORTED_TEXELS) uniform samplerBuffer sorted;
+layout(binding = BIND_CURSOR, scalar) buffer CursorBlock { Cursor cursors[]; };
+
+// Photons arriving at surfaces that turn away from the pixel's by more than acos(0.1) light another wall.
+const float NORMAL_AGREEMENT = 0.1;
+
+struct CellBox {
+    ivec3 low;
+    ivec3 high;
+};
+
+CellBox cell_box(vec3 centre, float radius) {
+    float reach = radius * 1.0001;  // beyond the rounding of the distance test
+    return CellBox(clamp_cell(cell_of(centre - reach)), clamp_cell(cell_of(centre + reach)));
+}
+
+// A walk goes through the box segment by segment: z, then y, then runs along x, each a range of sorted photons.
+struct Walk {
+    ivec3 cell;   // first cell of the segment
+    int last_x;   // its last cell
+    uint first;   // photons [first, last) of the segment
+    uint last;
+};
+
+// The segment that starts at `cell`: the whole row where rows are dense, else what lies in one run of the hash.
+Walk walk_segment(CellBox box, ivec3 cell) {
+    Walk walk;
+    walk.cell = cell;
+    walk.last_x = grid.dims.w == 0u ? box.high.x : min(box.high.x, cell.x | (HASH_RUN - 1));
+    uint start = cell_index(cell);
+    walk.first = counters[start];
+    walk.last = counters[start + uint(walk.last_x - cell.x) + 1u];
+    return walk;
+}
+
+// A bucket of the hash holds photons of other cells too: only those of this segment count here.
+bool in_segment(Walk walk, vec3 position) {
+    ivec3 cell = clamp_cell(cell_of(position));
+    return grid.dims.w == 0u || (cell.yz == walk.cell.yz && cell.x / HASH_RUN == walk.cell.x / HASH_RUN);
+}
+
+// Both normals on the side they were seen from. The packed one needs no normalisation for this.
+bool same_side(uint packed, vec3 normal) {
+    vec3 n = unpack_octahedron(packed);
+    float d = dot(n, normal);
+    return d > 0.0 && d * d >= NORMAL_AGREEMENT * NORMAL_AGREEMENT * dot(n, n);
+}
+
+// Loops over the photons of a box from `cursor` on. `walk.first` is the photon at hand in BODY; `steps` is spent one a
+// photon and one a segment, and the loops end early when it runs out: cursor then says where to go on. Loops instead
+// of branches: software Vulkan runs every branch of a loop body for every lane, so rows are kept out of the inner one.
+#define FOR_PHOTONS(box, cursor, walk, steps, BODY)                                                   \
+    for (ivec3 cell = cursor_cell(cursor, box); cell.z <= box.high.z && steps > 0;) {                 \
+        walk = walk_segment(box, cell);                                                               \
+        uint begin = walk.first;                                                                      \
+        walk.first += cursor.photon;                                                                  \
+        for (; walk.first < walk.last && steps > 0; ++walk.first, --steps) { BODY }                   \
+        cursor = Cursor(uvec3(cell), walk.first - begin);                                             \
+        if (walk.first >= walk.last) {                                                                \
+            cell.x = walk.last_x + 1;                                                                 \
+            if (cell.x > box.high.x) cell = ivec3(box.low.x, cell.y + 1, cell.z);                     \
+            if (cell.y > box.high.y) cell = ivec3(box.low.x, box.low.y, cell.z + 1);                  \
+            cursor = Cursor(uvec3(cell), 0u);                                                         \
+        }                                                                                             \
+        --steps;                                                                                      \
+    }
+
+ivec3 cursor_cell(Cursor cursor, CellBox box) { return cursor.cell.x == CURSOR_START ? box.low : ivec3(cursor.cell); }
+
+bool walked(Cursor cursor, CellBox box) { return int(cursor.cell.z) > box.high.z; }

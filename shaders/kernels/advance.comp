@@ -1,0 +1,12 @@
+#version 460
+// One invocation: the iteration is complete. Reads the number of photons; writes status.completed, status.stored.
+#include "include/kernel.glsl"
+#include "include/counters.glsl"
+
+layout(binding = BIND_COUNTERS, scalar) readonly buffer CounterBlock { uint counters[]; };
+
+void main() {
+    if (blocked(0u) || invocation() != 0u) return;
+    status.completed = launch.iteration + 1u;
+    status.stored += counters[PHOTON_TOTAL];
+}

@@ -1,0 +1,69 @@
+#version 460
+// One invocation a pixel: sums the photons in its disc with the radius in force before this iteration's photons were
+// looked at, and bins them for the estimator. Reads hits, pixels, grid, sorted photons; writes gathered, tally,
+// cursors. O(photons in the cells that the disc touches). Fails by running out of steps: goes on next round.
+// Acceptance: |y - x| < R strictly, and the photon's geometric normal agrees with the pixel's shading normal, both on
+// the side they were seen from; the distance is that in space, the kernel 1 / (pi R^2).
+#include "include/kernel.glsl"
+#include "include/frame.glsl"
+#include "include/grid.glsl"
+#include "include/search.glsl"
+#include "include/hits.glsl"
+#include "include/pixels.glsl"
+#include "estimators/estimator.glsl"
+
+layout(binding = BIND_FLUX_TEXELS) uniform samplerBuffer sorted_flux;
+
+void main() {
+    uint pixel = invocation();
+    if (pixel >= pixel_count() || blocked(PASS_GATHER)) return;
+    Cursor cursor = Cursor(uvec3(CURSOR_START), 0u);
+    Gathered sum = Gathered(vec3(0.0), 0u);
+    if (hit_position[pixel].state != HIT_DIFFUSE) {
+        gathered[pixel] = sum;
+        return;
+    }
+    if (launch.round > 0u) {
+        cursor = cursors[pixel];
+        if (cursor.cell.x == CURSOR_DONE) return;
+        sum = gathered[pixel];
+    }
+
+    vec3 position = hit_position[pixel].position;
+    vec3 normal = unpack_direction(hit_weight[pixel].normal);
+    float radius2 = pixels[pixel].radius2;
+    float inverse_radius = inversesqrt(radius2);
+    vec3 tangent, bitangent;
+    tangents(normal, tangent, bitangent);
+    tangent *= inverse_radius;
+    bitangent *= inverse_radius;
+
+    int steps = int(params.step_budget);
+    CellBox box = cell_box(position, sqrt(radius2));
+    Walk walk;
+    FOR_PHOTONS(box, cursor, walk, steps, {
+        vec4 photon = texelFetch(sorted, int(walk.first));
+        vec3 offset = photon.xyz - position;
+        float squared = dot(offset, offset);
+        if (squared < radius2 && same_side(floatBitsToUint(photon.w), normal) && in_segment(walk, photon.xyz)) {
+            vec4 flux = texelFetch(sorted_flux, int(walk.first));
+            vec3 power = flux.xyz;
+            if ((FEATURES & FEATURE_SMOOTH_DIFFUSE) != 0u) {
+                // Photons arrive per area of the true surface, the BRDF is that of the shaded one.
+                vec3 towards = unpack_direction(floatBitsToUint(flux.w));
+                vec3 geometric = unpack_direction(floatBitsToUint(photon.w));
+                power *= max(0.0, dot(towards, normal)) / max(0.01, dot(towards, geometric));
+            }
+            sum.flux += power;
+            ++sum.count;
+            record(pixel, vec2(dot(offset, tangent), dot(offset, bitangent)), squared * inverse_radius * inverse_radius);
+        }
+    })
+    gathered[pixel] = sum;
+    if (walked(cursor, box)) {
+        cursor.cell.x = CURSOR_DONE;
+    } else {
+        block_after(PASS_GATHER);
+    }
+    cursors[pixel] = cursor;
+}

@@ -1,0 +1,24 @@
+#version 460
+// Copies the photons into the order of their cells, so that a row of cells is one run of memory. Reads photons and the
+// sorted pairs (launch.count: which); writes sorted, sorted_flux. Invocations stride over the photons.
+#include "include/kernel.glsl"
+#include "include/counters.glsl"
+
+layout(binding = BIND_PAIRS_A, scalar) buffer PairBlockA { uvec2 pairs_a[]; };
+layout(binding = BIND_PAIRS_B, scalar) buffer PairBlockB { uvec2 pairs_b[]; };
+layout(binding = BIND_PHOTONS, scalar) readonly buffer PhotonBlock { Photon photons[]; };
+layout(binding = BIND_PHOTON_FLUX, scalar) readonly buffer FluxBlock { PhotonFlux photon_flux[]; };
+layout(binding = BIND_SORTED, scalar) writeonly buffer SortedBlock { Photon sorted[]; };
+layout(binding = BIND_SORTED_FLUX, scalar) writeonly buffer SortedFluxBlock { PhotonFlux sorted_flux[]; };
+layout(binding = BIND_COUNTERS, scalar) readonly buffer CounterBlock { uint counters[]; };
+
+void main() {
+    if (blocked(0u)) return;
+    uint total = counters[PHOTON_TOTAL];
+    uint stride = gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_WorkGroupSize.x;
+    for (uint i = invocation(); i < total; i += stride) {
+        uint slot = launch.count == 0u ? pairs_a[i].y : pairs_b[i].y;
+        sorted[i] = photons[slot];
+        sorted_flux[i] = photon_flux[slot];
+    }
+}

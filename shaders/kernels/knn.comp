@@ -1,0 +1,90 @@
+#version 460
+// Starting radii: one invocation a pixel that sees a diffuse surface and has no seeded radius yet. Its squared radius
+// becomes the squared distance of the k-th nearest accepted photon of this iteration; strict < in the gather then
+// leaves k - 1 inside, which makes (k - 1) / (pi R^2) unbiased. With fewer than k photons within the largest radius
+// it keeps that one and tries again next iteration: the estimate truncated there is unbiased too.
+// Reads hits, grid, sorted photons; writes pixels, tally, nearest, cursors; gathered[] holds the state of the search
+// (flux.x: largest kept squared distance, flux.y: its index, flux.z: search radius, count: kept).
+// O(photons in the cells met + k per replacement). Fails by running out of steps: goes on next round.
+#include "include/kernel.glsl"
+#include "include/frame.glsl"
+#include "include/grid.glsl"
+#include "include/search.glsl"
+#include "include/hits.glsl"
+#include "include/pixels.glsl"
+
+layout(binding = BIND_NEAREST, scalar) buffer NearestBlock { float nearest[]; };  // [knn x P]
+
+// Keeps the k smallest squared distances; returns the loop trips it took.
+int keep(inout Gathered kept, float squared, uint pixel) {
+    uint place = kept.count < params.knn ? kept.count : uint(kept.flux.y);
+    if (kept.count == params.knn && squared >= kept.flux.x) return 0;
+    nearest[place * pixel_count() + pixel] = squared;
+    if (kept.count < params.knn) ++kept.count;
+    if (kept.count < params.knn) return 0;
+    kept.flux.x = -1.0;
+    for (uint i = 0u; i < params.knn; ++i) {
+        float value = nearest[i * pixel_count() + pixel];
+        if (value > kept.flux.x) kept.flux.xy = vec2(value, float(i));
+    }
+    return int(params.knn);
+}
+
+void main() {
+    uint pixel = invocation();
+    if (pixel >= pixel_count() || blocked(PASS_KNN)) return;
+    if (hit_position[pixel].state != HIT_DIFFUSE || pixels[pixel].seeded != 0u) return;
+
+    // The largest radius: bounded by the pixel's footprint, but not below a disc of k photons at mean density.
+    float cap = sqrt(pixels[pixel].radius2);
+    Gathered kept;
+    Cursor cursor = Cursor(uvec3(CURSOR_START), 0u);
+    if (launch.round == 0u) {
+        bool first = cap == 0.0;
+        if (first) {
+            cap = min(params.radius_cap,
+                      max(params.radius_floor, params.footprint_cap * hit_emission[pixel].footprint));
+            pixels[pixel].radius2 = cap * cap;
+        }
+        // A pixel that failed before will hardly find k photons nearby: it looks through its whole disc at once.
+        kept = Gathered(vec3(-1.0, 0.0, first ? min(cap, 1.5 * grid.cell) : cap), 0u);
+    } else {
+        cursor = cursors[pixel];
+        if (cursor.cell.x == CURSOR_DONE) return;
+        kept = gathered[pixel];
+    }
+
+    vec3 position = hit_position[pixel].position;
+    vec3 normal = unpack_direction(hit_weight[pixel].normal);
+    int steps = int(params.step_budget);
+    CellBox box;
+    Walk walk;
+    while (true) {
+        box = cell_box(position, kept.flux.z);
+        float reach2 = kept.flux.z * kept.flux.z;
+        FOR_PHOTONS(box, cursor, walk, steps, {
+            vec4 photon = texelFetch(sorted, int(walk.first));
+            vec3 offset = photon.xyz - position;
+            float squared = dot(offset, offset);
+            if (squared < reach2 && same_side(floatBitsToUint(photon.w), normal) && in_segment(walk, photon.xyz)) {
+                steps -= keep(kept, squared, pixel);
+            }
+        })
+        if (!walked(cursor, box) || kept.count == params.knn || kept.flux.z >= cap) break;
+        kept = Gathered(vec3(-1.0, 0.0, min(cap, 2.0 * kept.flux.z)), 0u);
+        cursor = Cursor(uvec3(CURSOR_START), 0u);
+    }
+    if (!walked(cursor, box)) {
+        block_after(PASS_KNN);
+        cursors[pixel] = cursor;
+        gathered[pixel] = kept;
+        return;
+    }
+    if (kept.count == params.knn) {
+        pixels[pixel].radius2 = max(kept.flux.x, RADIUS2_MIN);
+        pixels[pixel].seeded = 1u;
+        pixels[pixel].total = 0u;
+        clear_tally(pixel);
+    }
+    cursors[pixel].cell.x = CURSOR_DONE;
+}

@@ -1,0 +1,27 @@
+#version 460
+// Stable radix sort of the photon pairs by cell, one digit a pass, step 1 of 2: every invocation counts the digits of
+// its consecutive pairs into its own column of the histogram [digits x columns]. No atomics, no barriers: the order
+// never depends on scheduling. launch.offset: shift of the digit; launch.count: which pairs are read.
+// Stable because columns are in order of the pairs and a column keeps their order. O(pairs / columns + digits).
+#include "include/kernel.glsl"
+#include "include/counters.glsl"
+
+layout(binding = BIND_PAIRS_A, scalar) buffer PairBlockA { uvec2 pairs_a[]; };
+layout(binding = BIND_PAIRS_B, scalar) buffer PairBlockB { uvec2 pairs_b[]; };
+layout(binding = BIND_COUNTERS, scalar) buffer CounterBlock { uint counters[]; };
+
+void main() {
+    uint lane = invocation();
+    if (lane >= params.sort_lanes || blocked(0u)) return;
+    const uint digits = 1u << DIGIT_BITS;
+    for (uint digit = 0u; digit < digits; ++digit) counters[RADIX_COUNTS + digit * params.sort_lanes + lane] = 0u;
+    uint total = counters[PHOTON_TOTAL];
+    uint size = (total + params.sort_lanes - 1u) / params.sort_lanes;
+    uint begin = min(lane * size, total);
+    uint end = min(begin + size, total);
+    for (uint i = begin; i < end; ++i) {
+        uint cell = launch.count == 0u ? pairs_a[i].x : pairs_b[i].x;
+        uint digit = (cell >> launch.offset) & (digits - 1u);
+        ++counters[RADIX_COUNTS + digit * params.sort_lanes + lane];
+    }
+}

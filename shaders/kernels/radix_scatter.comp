@@ -1,0 +1,28 @@
+#version 460
+// Stable radix sort, step 2 of 2: after the scan of the histogram, every invocation moves its consecutive pairs to
+// their places. launch.offset: shift of the digit; launch.count: which pairs are read. O(pairs / columns).
+#include "include/kernel.glsl"
+#include "include/counters.glsl"
+
+layout(binding = BIND_PAIRS_A, scalar) buffer PairBlockA { uvec2 pairs_a[]; };
+layout(binding = BIND_PAIRS_B, scalar) buffer PairBlockB { uvec2 pairs_b[]; };
+layout(binding = BIND_COUNTERS, scalar) buffer CounterBlock { uint counters[]; };
+
+void main() {
+    uint lane = invocation();
+    if (lane >= params.sort_lanes || blocked(0u)) return;
+    const uint digits = 1u << DIGIT_BITS;
+    uint total = counters[PHOTON_TOTAL];
+    uint size = (total + params.sort_lanes - 1u) / params.sort_lanes;
+    uint begin = min(lane * size, total);
+    uint end = min(begin + size, total);
+    for (uint i = begin; i < end; ++i) {
+        uvec2 pair = launch.count == 0u ? pairs_a[i] : pairs_b[i];
+        uint place = counters[RADIX_COUNTS + ((pair.x >> launch.offset) & (digits - 1u)) * params.sort_lanes + lane]++;
+        if (launch.count == 0u) {
+            pairs_b[place] = pair;
+        } else {
+            pairs_a[place] = pair;
+        }
+    }
+}

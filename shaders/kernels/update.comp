@@ -1,0 +1,54 @@
+#version 460
+// One invocation a pixel: adds the iteration's estimate to the film with the radius that gathered it, then lets the
+// estimator decide the next radius. Reads hits, gathered; writes film, pixels, tally and, where launch.offset is 1,
+// the histogram of radii from which the next grid is planned. O(rings x sectors).
+// A contribution that is not finite is dropped and counted in status.invalid.
+#include "include/kernel.glsl"
+#include "include/sampling.glsl"
+#include "include/hits.glsl"
+#include "include/pixels.glsl"
+#include "estimators/estimator.glsl"
+
+layout(binding = BIND_FILM, scalar) buffer FilmBlock { Film film[]; };
+
+bool finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
+
+// Neumaier's sum: `low` carries what each addition rounds away, so that 10^6 iterations do not stagnate.
+void add(inout float sum, inout float low, float value) {
+    precise float total = sum + value;
+    precise float lost = abs(sum) >= abs(value) ? (sum - total) + value : (value - total) + sum;
+    precise float carried = low + lost;
+    sum = total;
+    low = carried;
+}
+
+void main() {
+    uint pixel = invocation();
+    if (pixel >= pixel_count() || blocked(0u)) return;
+    PixelState state = pixels[pixel];
+    vec3 estimate = hit_emission[pixel].emission;
+    bool diffuse = hit_position[pixel].state == HIT_DIFFUSE;
+    Gathered sum = gathered[pixel];
+    if (diffuse) {
+        // L = W rho / pi * sum(power) / (pi R^2 J), the radius being that before this update.
+        estimate += hit_weight[pixel].weight * sum.flux * (params.inverse_paths / (PI * state.radius2));
+    }
+    if (finite(estimate.x) && finite(estimate.y) && finite(estimate.z)) {
+        Film f = film[pixel];
+        add(f.sum.x, f.low.x, estimate.x);
+        add(f.sum.y, f.low.y, estimate.y);
+        add(f.sum.z, f.low.z, estimate.z);
+        film[pixel] = f;
+    } else {
+        atomicAdd(status.invalid, 1u);
+    }
+    if (state.radius2 > 0.0) {
+        update(pixel, diffuse, diffuse ? sum.count : 0u, state);
+        state.radius2 = max(state.radius2, RADIUS2_MIN);
+        pixels[pixel] = state;
+        if (launch.offset == 1u && diffuse) {
+            int bin = int(floor(log2(state.radius2))) + 48;  // 2 (log2 R + 24)
+            atomicAdd(status.radius_histogram[clamp(bin, 0, RADIUS_BINS - 1)], 1u);
+        }
+    }
+}

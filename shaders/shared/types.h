@@ -1,0 +1,257 @@
+// Every struct and constant that host and kernels share. Compiled by g++ and by glslc; scalar block layout.
+// Lengths are in the scene frame: centred on the scene and scaled by a power of two to a radius in (1/2, 1].
+#ifdef __cplusplus
+#pragma once
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+namespace vkcppm::gpu {
+using glm::uvec2;
+using glm::uvec3;
+using glm::uvec4;
+using glm::vec2;
+using glm::vec3;
+using glm::vec4;
+using uint = std::uint32_t;
+#define VKCPPM_CONST inline constexpr
+#else
+#extension GL_EXT_scalar_block_layout : require
+#define VKCPPM_CONST const
+#endif
+
+// Specialization constants.
+#define SPEC_WORKGROUP 0  // invocations a work group
+#define SPEC_STACK 1      // entries of the traversal stack: the exact need of this scene's BVH
+#define SPEC_ESTIMATOR 2  // ESTIMATOR_*
+#define SPEC_RINGS 3      // n_a
+#define SPEC_SECTORS 4    // n_s, even
+#define SPEC_FEATURES 5   // FEATURE_* of this scene
+#define SPEC_DIGIT_BITS 6 // of one radix sort pass
+
+// Features of a scene: a pipeline holds only what its scene needs.
+#define FEATURE_MIRROR 1u
+#define FEATURE_DIELECTRIC 2u
+#define FEATURE_SMOOTH_DIFFUSE 4u  // a diffuse triangle whose shading normals are not its geometric normal
+
+#define MAX_RINGS 4
+#define MAX_SECTORS 12
+
+// Material kinds.
+#define SURFACE_DIFFUSE 0u
+#define SURFACE_MIRROR 1u
+#define SURFACE_DIELECTRIC 2u
+
+// Light kinds.
+#define LIGHT_TRIANGLE 0u
+#define LIGHT_POINT 1u
+#define LIGHT_SPOT 2u
+#define LIGHT_DIRECTIONAL 3u
+
+// Child word of a BVH node: 0 none; top bit set: leaf = first triangle << 3 | count; else index of a node.
+#define BVH_LEAF 0x80000000u
+#define BVH_MAX_LEAF 4
+
+// Top bit of TriangleShading::material: the three normals are the geometric normal.
+#define SHADING_FLAT 0x80000000u
+
+// 4-wide node, 64 bytes, read as 4 uvec4 texels. Box of child c on axis a: origin[a] + 2^(exponent[a]-127) * q[a] byte c.
+struct BvhNode {
+    vec3 origin;
+    uint exponents;    // biased exponents of the cell size, x | y << 8 | z << 16
+    uint low_x;        // byte c: child c
+    uint low_y;
+    uint low_z;
+    uint high_x;
+    uint high_y;
+    uint high_z;
+    uint child[4];
+    uint unused[2];
+};
+
+// Moeller-Trumbore form, 48 bytes, read as 3 vec4 texels.
+struct TriangleGeometry {
+    vec3 v0;
+    float error;       // bound of the rounding error of a point on it: rays start this far off its plane
+    vec3 e1;           // v1 - v0
+    uint unused1;
+    vec3 e2;           // v2 - v0
+    uint unused2;
+};
+
+// 16 bytes, read as 1 uvec4 texel.
+struct TriangleShading {
+    uint normal[3];    // octahedral snorm16x2
+    uint material;     // index | SHADING_FLAT
+};
+
+struct SurfaceMaterial {
+    vec3 color;        // diffuse: albedo; mirror: reflectance at normal incidence; dielectric: tint of transmission
+    uint kind;         // SURFACE_*
+    vec3 emission;     // radiance, W m^-2 sr^-1
+    float ior;         // dielectric
+    uint double_sided; // emits from both sides
+};
+
+// One entry of the alias table of lights. A path that starts here carries `power`: flux of the light / its probability.
+struct Light {
+    vec3 position;     // triangle: v0; point, spot: position; directional: centre of the disc that covers the scene
+    uint kind;         // LIGHT_*
+    vec3 e1;           // triangle: edge; spot, directional: unit direction of travel
+    float keep;        // alias table: probability to keep this entry
+    vec3 e2;           // triangle: edge; spot: (cos inner, cos outer, -); directional: (radius of the disc, -, -)
+    uint alias_entry;  // alias table: the other entry
+    vec3 power;        // W (frame-scaled)
+    uint double_sided; // triangle
+};
+
+// A stored photon: what the distance test reads (16 bytes) and what an accepted photon adds (16 bytes).
+struct Photon {
+    vec3 position;
+    uint normal;       // geometric, on the side it arrived at, octahedral snorm16x2
+};
+struct PhotonFlux {
+    vec3 power;        // W (frame-scaled), not yet divided by the number of emitted paths
+    uint direction;    // unit, towards where it came from, octahedral snorm16x2
+};
+
+// Where an eye path ended. 3 records of 16 bytes, one array each.
+struct HitPosition {
+    vec3 position;     // scene frame; while the path is unfinished: origin of the next ray
+    uint state;        // HIT_*
+};
+struct HitWeight {
+    vec3 weight;       // path throughput * albedo / pi; unfinished: path throughput
+    uint normal;       // shading normal on the eye's side, octahedral; unfinished: rays so far
+};
+struct HitEmission {
+    vec3 emission;     // throughput * radiance of emitters met on the way
+    float footprint;   // radius of the pixel's footprint at the hit, scene frame
+};
+#define HIT_NONE 0u        // nothing to gather: the path left the scene or was absorbed
+#define HIT_DIFFUSE 1u
+#define HIT_UNFINISHED 2u  // the step budget ran out: the next round goes on
+
+// Sum of one pass of the gather over a pixel's disc.
+struct Gathered {
+    vec3 flux;         // sum of photon power * correction, without the hit's weight
+    uint count;        // accepted photons
+};
+
+// What a pixel remembers between iterations.
+struct PixelState {
+    float radius2;     // R^2 in force, 0 before the pixel first saw a diffuse surface
+    uint seeded;       // 1 once the k-th nearest photon gave the radius; 0: radius2 is the cap
+    float count;       // sppm: N of Hachisuka and Jensen; sppm-kz: iterations since the radius was seeded
+    uint total;        // photons accepted since the last reset of the tally
+    float batch;       // B, photons to see before a test
+    uint rejections;
+};
+
+// Compensated sum of radiance (Neumaier): sum + low is the estimate times the iterations.
+struct Film {
+    vec3 sum;
+    vec3 low;
+};
+
+// A light path in flight at the end of a round, one a lane.
+struct PathState {
+    vec3 origin;
+    uint path;         // index within the lane's photons; >= the lane's number: done
+    vec3 direction;
+    uint bounce;
+    vec3 power;
+    uint stored;       // photons this lane has stored
+    float power0;      // largest channel of the power at emission, for Russian roulette
+};
+
+// Where a resumable walk over the grid goes on.
+struct Cursor {
+    uvec3 cell;        // first cell of the segment; x: CURSOR_START or CURSOR_DONE
+    uint photon;       // photons of the segment that were seen
+};
+#define CURSOR_START 0xffffffffu
+#define CURSOR_DONE 0xfffffffeu
+
+// The grid in force.
+struct Grid {
+    vec3 origin;
+    float inverse_cell;
+    uvec4 dims;        // cells an axis; w: 0 dense rows, else mask of the hash table
+    float cell;
+};
+
+// Passes that can run out of their step budget.
+#define PASS_EYE 1u
+#define PASS_PHOTON 2u
+#define PASS_KNN 4u
+#define PASS_GATHER 8u
+#define PASS_CAPACITY 16u  // a lane stored more photons than it has slots
+
+#define RADIUS_BINS 64     // histogram of log2 R: bin = 2 * (log2 R + 24), clamped
+
+struct Status {
+    uint blocked;      // PASS_* bits: passes after these do nothing until the host has seen to them
+    uint completed;    // iterations whose update has run
+    uint capacity;     // largest number of photons that one lane wanted to store
+    uint stuck;        // rays that need more than a whole budget: the scene cannot be traced
+    uint invalid;      // contributions dropped because they were not finite
+    uint rays;         // traced since the host last cleared it
+    uint stored;       // photons stored since the host last cleared it
+    uint unused;
+    uint radius_histogram[RADIUS_BINS];
+};
+
+// Per render.
+struct Params {
+    vec3 eye;
+    uint width;
+    vec3 right;            // half of the image plane at distance 1
+    uint height;
+    vec3 up;
+    uint seed;
+    vec3 forward;          // unit
+    float pixel_radius;    // radius of a pixel's footprint at distance 1
+    vec3 bounds_low;       // of the triangles, padded
+    uint photons;          // paths an iteration
+    vec3 bounds_high;
+    uint photons_per_lane;
+    uint photon_lanes;
+    uint photon_capacity;  // slots a lane
+    uint max_depth;
+    uint light_count;
+    uint step_budget;      // loop trips of one invocation of a resumable kernel
+    uint knn;
+    float radius_cap;      // largest starting radius
+    float radius_floor;    // the cap by footprint never goes below this: a disc of k photons at mean density
+    float footprint_cap;   // starting radius in footprints of the pixel
+    float scene_area;
+    float inverse_paths;   // 1 / photons; 0 where nothing emits
+    float alpha;
+    float k;
+    float beta;
+    uint cells;            // capacity of the cell table, a power of two
+    uint sort_lanes;       // columns of the radix histogram
+    float threshold[MAX_RINGS];          // chi-squared quantile for the disc of the first m + 1 rings
+    vec2 sector_edge[MAX_SECTORS / 2];   // unit vectors at 2 pi s / n_s, s < n_s / 2
+};
+
+// Per launch.
+struct Launch {
+    uint iteration;
+    uint round;        // of a resumable pass
+    uint last_round;   // 1: unfinished work blocks the passes that follow
+    uint offset;       // scan: first element; radix: shift of the digit; update: 1 counts the radii
+    uint count;        // scan: elements; radix: 0 reads pairs[0], 1 reads pairs[1]
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(BvhNode) == 64);
+static_assert(sizeof(TriangleGeometry) == 48);
+static_assert(sizeof(TriangleShading) == 16);
+static_assert(sizeof(Photon) == 16 && sizeof(PhotonFlux) == 16);
+static_assert(sizeof(HitPosition) == 16 && sizeof(HitWeight) == 16 && sizeof(HitEmission) == 16);
+static_assert(sizeof(Gathered) == 16 && sizeof(Film) == 24);
+static_assert(sizeof(Launch) <= 128);
+}  // namespace vkcppm::gpu
+#endif

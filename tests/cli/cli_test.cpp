@@ -1,0 +1,503 @@
+// The built program as a user meets it: exit codes, messages, files.
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "core/image.h"
+#include "io/exr.h"
+#include "support/files.h"
+#include "support/process.h"
+#include "support/temporary_folder.h"
+
+namespace vkcppm {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using Words = std::vector<std::string>;
+
+std::string scene(const std::string& name) {
+    return (fs::path(VKCPPM_SOURCE_DIR) / "scenes" / (name + ".gltf")).string();
+}
+
+std::string shown(const Words& words) {
+    std::string text = "vkcppm";
+    for (const std::string& word : words) {
+        text += " " + word;
+    }
+    return text;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) {
+        lines.push_back(line);
+    }
+    return lines;
+}
+
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+/// The program's runs, each test in a folder of its own.
+class Cli : public testing::Test {
+protected:
+    test::ProcessResult run(Words words) const {
+        words.insert(words.begin(), VKCPPM_PROGRAM);
+        return test::run_process(words, folder_.path());
+    }
+
+    /// A picture that takes a moment: 16x12 pixels, two iterations of 500 paths.
+    test::ProcessResult render(Words more) const {
+        Words words{scene("caustic"), "--size", "16x12", "--iterations", "2", "--photons", "500", "--quiet"};
+        words.insert(words.end(), more.begin(), more.end());
+        return run(words);
+    }
+
+    /// The same by a shell in the folder; $0 is the program, $1 a scene, for redirections.
+    test::ProcessResult shell(const std::string& script) const {
+        return test::run_process({"/bin/sh", "-c", script, VKCPPM_PROGRAM, scene("caustic")}, folder_.path());
+    }
+
+    std::map<std::string, std::string> attributes(const std::string& name) const {
+        const ExrAttributes list = read_exr_attributes(folder_ / name);
+        return {list.begin(), list.end()};
+    }
+
+    test::TemporaryFolder folder_;
+};
+
+void expect_done(const test::ProcessResult& result) {
+    EXPECT_FALSE(result.timed_out);
+    EXPECT_EQ(result.signal, 0);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+}
+
+/// Exit code `code`, nothing on standard output, and one line of error that holds all of `told`.
+void expect_failure(const test::ProcessResult& result, int code, const Words& told, const std::string& what) {
+    SCOPED_TRACE(what);
+    EXPECT_FALSE(result.timed_out);
+    EXPECT_EQ(result.signal, 0);
+    EXPECT_EQ(result.exit_code, code) << result.err;
+    EXPECT_EQ(result.out, "");
+    const std::vector<std::string> lines = lines_of(result.err);
+    const auto is_error = [](const std::string& line) { return line.starts_with("error: "); };
+    ASSERT_EQ(std::count_if(lines.begin(), lines.end(), is_error), 1) << result.err;
+    EXPECT_TRUE(is_error(lines.back())) << result.err;
+    for (const std::string& part : told) {
+        EXPECT_TRUE(contains(lines.back(), part)) << "'" << part << "' is not in: " << lines.back();
+    }
+}
+
+// ---- Help, version and the listing commands
+
+TEST_F(Cli, HelpAndVersionGoToStandardOutput) {
+    for (const Words& words : {Words{"--help"}, Words{"-h"}, Words{"compare", "--help"}, Words{"info", "--help"},
+                               Words{"devices", "--help"}}) {
+        const auto result = run(words);
+        expect_done(result);
+        EXPECT_TRUE(contains(result.out, "Usage: vkcppm")) << shown(words) << "\n" << result.out;
+        EXPECT_EQ(result.err, "");
+    }
+    const auto version = run({"--version"});
+    expect_done(version);
+    EXPECT_TRUE(version.out.starts_with("vkcppm ")) << version.out;
+    EXPECT_EQ(lines_of(version.out).size(), 1u);
+}
+
+TEST_F(Cli, DevicesAreListed) {
+    const auto result = run({"devices", "--json"});
+    expect_done(result);
+    const Json devices = Json::parse(result.out);
+    ASSERT_TRUE(devices.is_array());
+    ASSERT_FALSE(devices.empty()) << "these tests need a Vulkan device";
+    const auto plain = run({"devices"});
+    expect_done(plain);
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+        EXPECT_EQ(devices[i].at("index"), i);
+        EXPECT_EQ(devices[i].at("uuid").get<std::string>().size(), 36u) << devices[i];
+        EXPECT_EQ(devices[i].at("usable").get<bool>(), devices[i].at("unusable_because") == "");
+        EXPECT_TRUE(contains(plain.out, devices[i].at("name").get<std::string>())) << plain.out;
+        EXPECT_TRUE(contains(plain.out, "uuid:" + devices[i].at("uuid").get<std::string>())) << plain.out;
+    }
+}
+
+TEST_F(Cli, InfoTellsWhatIsInTheScene) {
+    const auto result = run({"info", scene("point_plane"), "--json"});
+    expect_done(result);
+    const Json info = Json::parse(result.out);
+    EXPECT_EQ(info.at("triangles"), 2);
+    EXPECT_EQ(info.at("bounds").at("min"), Json({-4.0, 0.0, -4.0}));
+    EXPECT_EQ(info.at("bounds").at("max"), Json({4.0, 0.0, 4.0}));
+    ASSERT_EQ(info.at("lights").size(), 1u);
+    EXPECT_EQ(info.at("lights")[0].at("kind"), "point");
+    ASSERT_EQ(info.at("cameras").size(), 1u);
+    const Json file = Json::parse(test::read_bytes(scene("point_plane")));
+    const Json& light = file.at("extensions").at("KHR_lights_punctual").at("lights")[0];
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(info.at("lights")[0].at("intensity")[c].get<double>(),
+                    light.at("intensity").get<double>() * light.at("color")[c].get<double>(), 1e-4)
+            << "channel " << c;
+    }
+    const double yfov = file.at("cameras")[0].at("perspective").at("yfov");
+    EXPECT_NEAR(info.at("cameras")[0].at("yfov_degrees").get<double>() * std::numbers::pi / 180.0, yfov, 1e-9);
+    EXPECT_EQ(info.at("hash").get<std::string>().size(), 16u);
+}
+
+TEST_F(Cli, InfoTellsHowMaterialsAreTreated) {
+    const auto result = run({"info", scene("caustic"), "--json"});
+    expect_done(result);
+    const Json info = Json::parse(result.out);
+    ASSERT_EQ(info.at("materials").size(), 6u);
+    std::map<std::string, std::string> treatment;
+    std::size_t triangles = 0;
+    for (const Json& material : info.at("materials")) {
+        treatment[material.at("name")] = material.at("treatment");
+        triangles += material.at("triangles").get<std::size_t>();
+    }
+    EXPECT_EQ(triangles, info.at("triangles").get<std::size_t>());
+    EXPECT_NE(treatment.at("plaster"), "");
+    EXPECT_NE(treatment.at("glass"), treatment.at("plaster"));
+    EXPECT_NE(treatment.at("gold"), treatment.at("plaster"));
+    const auto plain = run({"info", scene("caustic")});
+    expect_done(plain);
+    for (const auto& [name, text] : treatment) {
+        EXPECT_TRUE(contains(plain.out, "'" + name + "'")) << plain.out;
+        EXPECT_TRUE(contains(plain.out, text)) << plain.out;
+    }
+}
+
+// ---- Comparing
+
+TEST_F(Cli, CompareGivesTheMeasures) {
+    write_exr(folder_ / "a.exr", Image{{2, 1}, {{1.5f, 0.5f, 0.5f}, {0.5f, 0.0f, 0.25f}}});
+    write_exr(folder_ / "r.exr", Image{{2, 1}, {{1.0f, 0.5f, 0.0f}, {1.0f, 0.5f, 0.25f}}});
+    const auto result = run({"compare", "a.exr", "r.exr", "--json"});
+    expect_done(result);
+    const Json json = Json::parse(result.out);
+    EXPECT_EQ(json.at("mean_ratio"), Json({1.0, 0.5, 3.0}));
+    EXPECT_NEAR(json.at("mse").get<double>(), 1.0 / 6.0, 1e-15);
+    EXPECT_NEAR(json.at("relmse").get<double>(), (0.5 / 1.01 + 25.0 + 0.25 / 0.26) / 6.0, 1e-12);
+    EXPECT_TRUE(json.contains("relmse_trimmed") && json.contains("srgb_mse") && json.contains("psnr")) << json;
+    const auto plain = run({"compare", "a.exr", "r.exr"});
+    expect_done(plain);
+    EXPECT_TRUE(contains(plain.out, "1.000000 0.500000 3.000000")) << plain.out;
+}
+
+TEST_F(Cli, CompareFindsNoErrorInTheSamePicture) {
+    write_exr(folder_ / "a.exr", Image{{1, 2}, {{1.5f, 0.5f, 0.5f}, {0.5f, 0.1f, 0.25f}}});
+    const auto result = run({"compare", "a.exr", "a.exr", "--json"});
+    expect_done(result);
+    const Json json = Json::parse(result.out);
+    EXPECT_EQ(json.at("mean_ratio"), Json({1.0, 1.0, 1.0}));
+    EXPECT_EQ(json.at("relmse"), 0.0);
+    EXPECT_TRUE(json.at("psnr").is_null()) << "infinite, which JSON cannot say: " << json;
+}
+
+TEST_F(Cli, CompareRefusesWhatItCannotCompare) {
+    write_exr(folder_ / "a.exr", Image{{2, 1}, std::vector<glm::vec3>(2, glm::vec3(1.0f))});
+    write_exr(folder_ / "b.exr", Image{{1, 2}, std::vector<glm::vec3>(2, glm::vec3(1.0f))});
+    test::write_bytes(folder_ / "text.exr", "no picture");
+    expect_failure(run({"compare", "a.exr", "b.exr"}), 2, {"2x1", "1x2"}, "sizes");
+    expect_failure(run({"compare", "a.exr", "missing.exr"}), 66, {"missing.exr"}, "missing");
+    expect_failure(run({"compare", "text.exr", "a.exr"}), 65, {"text.exr"}, "no picture");
+    expect_failure(run({"compare", "a.exr"}), 2, {"REFERENCE"}, "one picture");
+}
+
+TEST_F(Cli, CompareCountsNonFinitePixels) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    write_exr(folder_ / "a.exr", Image{{2, 1}, {glm::vec3(nan), glm::vec3(1.0f)}});
+    write_exr(folder_ / "r.exr", Image{{2, 1}, {glm::vec3(1.0f), glm::vec3(1.0f)}});
+    const auto result = run({"compare", "a.exr", "r.exr", "--json"});
+    expect_done(result);
+    EXPECT_EQ(Json::parse(result.out).at("image_non_finite"), 1);
+    EXPECT_EQ(Json::parse(result.out).at("mse"), 0.0);
+    EXPECT_TRUE(contains(result.err, "warning: 1 pixels of the image")) << result.err;
+}
+
+// ---- Misuse of the render
+
+struct Misuse {
+    Words words;  // after the scene
+    int code;
+    Words told;
+};
+
+TEST_F(Cli, EveryMisuseHasItsExitCodeAndItsLine) {
+    const std::vector<Misuse> all = {
+        {{"--bogus"}, 2, {"--bogus"}},
+        {{"another.gltf"}, 2, {"another.gltf"}},
+        {{"--photons", "-1"}, 2, {"--photons", "-1"}},
+        {{"--photons", "many"}, 2, {"--photons", "many"}},
+        {{"--photons", "0"}, 2, {"photons", "0"}},
+        {{"--photons", "16777217"}, 2, {"photons", "16777217", "16777216"}},
+        {{"--iterations", "0"}, 2, {"iterations", "0"}},
+        {{"--iterations", "2147483648"}, 2, {"iterations", "2147483648", "2147483647"}},
+        {{"--time", "-1"}, 2, {"--time", "-1"}},
+        {{"--time", "soon"}, 2, {"--time", "soon"}},
+        {{"--size", "0x0"}, 2, {"--size", "width 0"}},
+        {{"--size", "16x0"}, 2, {"--size", "height 0"}},
+        {{"--size", "4000000000x4000000000"}, 2, {"--size", "4000000000"}},
+        {{"--size", "large"}, 2, {"--size", "large"}},
+        {{"--estimator", "magic"}, 2, {"estimator", "magic", "cppm", "sppm-kz"}},
+        {{"--camera", "nowhere"}, 2, {"camera", "nowhere"}},
+        {{"--camera", "99"}, 2, {"camera", "99"}},
+        {{"--max-depth", "0"}, 2, {"max-depth", "0"}},
+        {{"--max-depth", "1025"}, 2, {"max-depth", "1025", "1024"}},
+        {{"--knn", "0"}, 2, {"knn", "0"}},
+        {{"--knn", "257"}, 2, {"knn", "257", "256"}},
+        {{"--alpha", "0"}, 2, {"alpha", "0"}},
+        {{"--alpha", "1"}, 2, {"alpha", "1"}},
+        {{"--alpha", "nan"}, 2, {"alpha", "nan"}},
+        {{"--k", "1.5"}, 2, {"--k", "1.5"}},
+        {{"--beta", "0.5"}, 2, {"beta", "0.5"}},
+        {{"--significance", "1"}, 2, {"significance", "1"}},
+        {{"--rings", "0"}, 2, {"rings", "0"}},
+        {{"--sectors", "0"}, 2, {"sectors", "0"}},
+        {{"--exposure", "1"}, 2, {"--exposure", "--png"}},
+        {{"--png", "caustic.exr"}, 2, {"--png", "caustic.exr"}},
+        {{"-o", scene("caustic")}, 2, {"-o", "caustic.gltf"}},
+        {{"--device", "no such device"}, 69, {"no such device"}},
+        {{"--device", "uuid:ffffffff-ffff-ffff-ffff-ffffffffffff"}, 69, {"ffffffff-ffff"}},
+        {{"-o", "missing/out.exr"}, 73, {"missing/out.exr"}},
+        {{"-o", "/proc/out.exr"}, 73, {"/proc/out.exr"}},
+        {{"-o", "/dev/null"}, 73, {"/dev/null"}},
+        {{"-o", "."}, 73, {"folder"}},
+        {{"--png", "missing/out.png"}, 73, {"missing/out.png"}},
+        {{"--stats", "missing/out.json"}, 73, {"missing/out.json"}},
+    };
+    for (const Misuse& misuse : all) {
+        Words words{scene("caustic")};
+        words.insert(words.end(), misuse.words.begin(), misuse.words.end());
+        expect_failure(run(words), misuse.code, misuse.told, shown(words));
+        EXPECT_TRUE(test::names_in(folder_.path()).empty()) << shown(words) << " left a file behind";
+    }
+}
+
+TEST_F(Cli, ASceneIsNeeded) {
+    test::write_bytes(folder_ / "text.gltf", "no scene");
+    test::write_bytes(folder_ / "cut.gltf", test::read_bytes(scene("caustic")).substr(0, 2000));
+    test::write_bytes(folder_ / "empty.glb", "");
+    for (const Words& words : {Words{}, Words{"info"}}) {
+        const auto with = [&](const std::string& file) {
+            Words all = words;
+            all.push_back(file);
+            return run(all);
+        };
+        expect_failure(run(words), 2, {"SCENE"}, shown(words));
+        expect_failure(with("missing.gltf"), 66, {"missing.gltf"}, "missing");
+        expect_failure(with("."), 66, {}, "a folder");
+        expect_failure(with("text.gltf"), 65, {"text.gltf"}, "text");
+        expect_failure(with("cut.gltf"), 65, {"cut.gltf"}, "cut");
+        expect_failure(with("empty.glb"), 65, {"empty.glb"}, "empty");
+    }
+}
+
+TEST_F(Cli, AFailureLeavesAGoodPictureAlone) {
+    test::write_bytes(folder_ / "good.exr", "good");
+    test::write_bytes(folder_ / "text.gltf", "no scene");
+    EXPECT_EQ(run({"text.gltf", "-o", "good.exr"}).exit_code, 65);
+    EXPECT_EQ(run({"missing.gltf", "-o", "good.exr"}).exit_code, 66);
+    EXPECT_EQ(run({scene("caustic"), "-o", "good.exr", "--alpha", "7"}).exit_code, 2);
+    EXPECT_EQ(run({scene("caustic"), "-o", "good.exr", "--device", "no such device"}).exit_code, 69);
+    EXPECT_EQ(test::read_bytes(folder_ / "good.exr"), "good");
+    EXPECT_EQ(test::names_in(folder_.path()), (std::set<std::string>{"good.exr", "text.gltf"}));
+}
+
+TEST_F(Cli, AFullDiskIsNoticedAndLeavesNothing) {
+    test::write_bytes(folder_ / "good.exr", "good");
+    // The shell's own limit on the size of files, in blocks of 512 bytes; the picture needs 49 KiB before compression.
+    const auto result =
+        shell("ulimit -f 4; exec \"$0\" \"$1\" --size 64x64 --iterations 1 --photons 5000 --quiet -o good.exr");
+    expect_failure(result, 73, {"good.exr", "File too large"}, "full disk");
+    EXPECT_EQ(test::read_bytes(folder_ / "good.exr"), "good");
+    EXPECT_EQ(test::names_in(folder_.path()), std::set<std::string>{"good.exr"});
+}
+
+// ---- Streams that take nothing
+
+TEST_F(Cli, UnwritableStandardOutputIsAnError) {
+    for (const char* script : {"exec \"$0\" devices > /dev/full", "exec \"$0\" devices >&-",
+                               "exec \"$0\" info \"$1\" --json > /dev/full", "exec \"$0\" --help > /dev/full"}) {
+        const auto result = shell(script);
+        EXPECT_EQ(result.exit_code, 73) << script << "\n" << result.err;
+        EXPECT_TRUE(contains(result.err, "error: cannot write to standard output")) << script << "\n" << result.err;
+    }
+}
+
+TEST_F(Cli, ClosedStreamsDoNotHurtThePicture) {
+    const std::string options = " \"$1\" --size 16x12 --iterations 2 --photons 500 ";
+    expect_done(shell("exec \"$0\"" + options + "-o plain.exr"));
+    expect_done(shell("exec \"$0\"" + options + "-o closed.exr <&- >&- 2>&-"));
+    expect_done(shell("exec \"$0\"" + options + "-o full.exr 2> /dev/full"));
+    // A pipe whose reader has gone: the exit code is kept in a file.
+    shell("(\"$0\"" + options + "-o pipe.exr 2>&1; echo $? > code) | true");
+    EXPECT_EQ(test::read_bytes(folder_ / "code"), "0\n");
+    const std::string plain = test::read_bytes(folder_ / "plain.exr");
+    EXPECT_FALSE(plain.empty());
+    for (const char* name : {"closed.exr", "full.exr", "pipe.exr"}) {
+        EXPECT_TRUE(test::read_bytes(folder_ / name) == plain) << name << " differs";
+    }
+}
+
+// ---- Rendering
+
+TEST_F(Cli, WritesPictureViewAndStatistics) {
+    const auto result =
+        render({"-o", "a.exr", "--png", "a.png", "--exposure", "1", "--stats", "a.json", "--seed", "3"});
+    expect_done(result);
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(test::names_in(folder_.path()), (std::set<std::string>{"a.exr", "a.png", "a.json"}));
+
+    const Image image = read_exr(folder_ / "a.exr");
+    EXPECT_EQ(image.extent, (Extent{16, 12}));
+    EXPECT_TRUE(std::any_of(image.rgb.begin(), image.rgb.end(), [](const glm::vec3& p) { return p.g > 0.0f; }));
+    EXPECT_TRUE(test::read_bytes(folder_ / "a.png").starts_with("\x89PNG\r\n"));
+
+    const auto text = attributes("a.exr");
+    const std::map<std::string, std::string> expected = {
+        {"vkcppm.scene", "caustic.gltf"}, {"vkcppm.estimator", "cppm"},      {"vkcppm.seed", "3"},
+        {"vkcppm.iterations", "2"},       {"vkcppm.iterations_done", "2"},   {"vkcppm.photons", "500"},
+        {"vkcppm.size", "16x12"},         {"vkcppm.emitted_photons", "1000"}, {"vkcppm.max_depth", "64"},
+        {"vkcppm.knn", "10"},             {"vkcppm.k", "0.8"},               {"vkcppm.beta", "1.2"},
+        {"vkcppm.significance", "0.05"},  {"vkcppm.rings", "2"},             {"vkcppm.sectors", "6"}};
+    for (const auto& [name, value] : expected) {
+        ASSERT_TRUE(text.contains(name)) << name;
+        EXPECT_EQ(text.at(name), value) << name;
+    }
+    EXPECT_DOUBLE_EQ(std::stod(text.at("vkcppm.alpha")), 2.0 / 3.0);
+    for (const char* name : {"vkcppm.device", "vkcppm.driver", "vkcppm.version", "vkcppm.camera"}) {
+        ASSERT_TRUE(text.contains(name)) << name;
+    }
+    EXPECT_NE(text.at("vkcppm.device"), "");
+
+    const Json stats = Json::parse(test::read_bytes(folder_ / "a.json"));
+    const Json& totals = stats.at("totals");
+    EXPECT_EQ(totals.at("iterations"), 2);
+    EXPECT_EQ(totals.at("emitted_paths"), 1000);
+    for (const char* name : {"stored_photons", "rays", "wall_seconds", "cpu_seconds", "setup_seconds",
+                             "peak_memory_bytes", "device_memory_bytes"}) {
+        EXPECT_GT(totals.at(name).get<double>(), 0.0) << name;
+    }
+    EXPECT_EQ(stats.at("device"), text.at("vkcppm.device"));
+    EXPECT_EQ(stats.at("driver"), text.at("vkcppm.driver"));
+    EXPECT_EQ(stats.at("version"), text.at("vkcppm.version"));
+    EXPECT_EQ(stats.at("scene").at("hash"), text.at("vkcppm.scene_hash"));
+    EXPECT_EQ(stats.at("settings").at("photons"), 500);
+    ASSERT_FALSE(stats.at("passes").empty());
+    double device_seconds = 0.0;
+    for (const Json& pass : stats.at("passes")) {
+        EXPECT_NE(pass.at("name"), "");
+        EXPECT_GT(pass.at("calls").get<int>(), 0) << pass;
+        device_seconds += pass.at("device_seconds").get<double>();
+    }
+    EXPECT_GT(device_seconds, 0.0);
+}
+
+TEST_F(Cli, ThePictureIsNamedAfterTheScene) {
+    expect_done(render({}));
+    EXPECT_EQ(test::names_in(folder_.path()), std::set<std::string>{"caustic.exr"});
+}
+
+TEST_F(Cli, OneSeedGivesTheSameBytesAndAnotherDoesNot) {
+    expect_done(render({"-o", "a.exr", "--seed", "7"}));
+    expect_done(render({"-o", "b.exr", "--seed", "7"}));
+    expect_done(render({"-o", "c.exr", "--seed", "8"}));
+    EXPECT_TRUE(test::read_bytes(folder_ / "a.exr") == test::read_bytes(folder_ / "b.exr"));
+    EXPECT_NE(read_exr(folder_ / "a.exr"), read_exr(folder_ / "c.exr"));
+}
+
+TEST_F(Cli, EveryEstimatorRenders) {
+    for (const char* estimator : {"cppm", "sppm", "sppm-kz"}) {
+        expect_done(render({"-o", std::string(estimator) + ".exr", "--estimator", estimator}));
+        EXPECT_EQ(attributes(std::string(estimator) + ".exr").at("vkcppm.estimator"), estimator);
+    }
+}
+
+TEST_F(Cli, TheTimeLimitEndsTheRender) {
+    const auto result = run({scene("caustic"), "--size", "16x12", "--photons", "500", "--time", "300ms", "--quiet"});
+    expect_done(result);
+    const auto text = attributes("caustic.exr");
+    EXPECT_EQ(text.at("vkcppm.iterations"), "2147483647");
+    EXPECT_EQ(text.at("vkcppm.time"), "0.3");
+    EXPECT_GE(std::stoull(text.at("vkcppm.iterations_done")), 1u);
+}
+
+TEST_F(Cli, ProgressIsPlainLinesWithoutATerminalAndNothingWhenQuiet) {
+    const Words words{scene("caustic"), "--size", "16x12", "--photons", "500", "--iterations", "3"};
+    const auto result = run(words);
+    expect_done(result);
+    EXPECT_TRUE(contains(result.err, "/3 iterations (")) << result.err;
+    EXPECT_TRUE(contains(result.err, "3 iterations in ")) << result.err;
+    EXPECT_TRUE(contains(result.err, "wrote caustic.exr")) << result.err;
+    EXPECT_FALSE(contains(result.err, "\r") || contains(result.err, "\x1b")) << result.err;
+
+    const auto quiet = render({});
+    EXPECT_FALSE(contains(quiet.err, "iterations") || contains(quiet.err, "wrote")) << quiet.err;
+
+    const auto verbose = render({"--verbose"});
+    EXPECT_TRUE(contains(verbose.err, "device s")) << verbose.err;
+    EXPECT_TRUE(contains(verbose.err, "1000 emitted paths")) << verbose.err;
+}
+
+class CliSignal : public Cli, public testing::WithParamInterface<int> {};
+
+TEST_P(CliSignal, KeepsWhatThereIs) {
+    test::Process process({VKCPPM_PROGRAM, scene("caustic"), "--size", "16x12", "--photons", "500", "--time", "600s",
+                           "-o", "a.exr", "--stats", "a.json"},
+                          folder_.path());
+    ASSERT_TRUE(process.wait_for_message("iterations (")) << process.wait().err;
+    process.send(GetParam());
+    const auto result = process.wait();
+    expect_done(result);
+    const std::string done = attributes("a.exr").at("vkcppm.iterations_done");
+    EXPECT_TRUE(contains(result.err, "interrupted after " + done + " iterations: wrote a.exr")) << result.err;
+    EXPECT_GE(std::stoull(done), 1u);
+    const Json stats = Json::parse(test::read_bytes(folder_ / "a.json"));
+    EXPECT_EQ(stats.at("totals").at("iterations").dump(), done);
+    EXPECT_EQ(test::names_in(folder_.path()), (std::set<std::string>{"a.exr", "a.json"}));
+}
+
+INSTANTIATE_TEST_SUITE_P(, CliSignal, testing::Values(SIGINT, SIGTERM), [](const auto& info) {
+    return info.param == SIGINT ? "SIGINT" : "SIGTERM";
+});
+
+TEST_F(Cli, AnInterruptedPictureIsThatOfAsManyIterations) {
+    const Words words{scene("caustic"), "--size", "16x12", "--photons", "500", "-o"};
+    Words long_words = words;
+    long_words.insert(long_words.begin(), VKCPPM_PROGRAM);
+    long_words.insert(long_words.end(), {"cut.exr", "--iterations", "2147483647"});
+    test::Process process(long_words, folder_.path());
+    ASSERT_TRUE(process.wait_for_message("iterations (")) << process.wait().err;
+    process.send(SIGINT);
+    expect_done(process.wait());
+    Words short_words = words;
+    short_words.insert(short_words.end(),
+                       {"whole.exr", "--iterations", attributes("cut.exr").at("vkcppm.iterations_done")});
+    expect_done(run(short_words));
+    EXPECT_EQ(read_exr(folder_ / "cut.exr"), read_exr(folder_ / "whole.exr"));
+}
+
+TEST_F(Cli, TheValidationLayerHasNothingToSay) {
+    const auto result = render({"--validate"});
+    if (result.exit_code == 69) {
+        GTEST_SKIP() << result.err;
+    }
+    expect_done(result);
+}
+
+}  // namespace
+}  // namespace vkcppm

@@ -1,0 +1,16 @@
+#pragma once
+// Reflectances, in the angle form of Fresnel's own equations (the GPU has the cosine form).
+
+#include <glm/vec3.hpp>
+
+namespace vkcppm::reference {
+
+/// Reflectance of unpolarised light at a smooth dielectric: Rs = sin^2(i - t) / sin^2(i + t),
+/// Rp = tan^2(i - t) / tan^2(i + t). `cosine` = cos(i) in [0, 1], `ior_ratio` = index behind / index before the face.
+/// 1 where the reflection is total.
+double fresnel_dielectric(double cosine, double ior_ratio);
+
+/// glTF's metal (Schlick): base + (1 - base)(1 - cosine)^5.
+glm::dvec3 fresnel_metal(const glm::dvec3& base, double cosine);
+
+}  // namespace vkcppm::reference

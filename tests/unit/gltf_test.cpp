@@ -1,0 +1,621 @@
+// Every part of the glTF loader against values worked out by hand.
+
+#include "scene/gltf.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "support/files.h"
+#include "support/gltf_builder.h"
+#include "support/temporary_folder.h"
+
+namespace vkcppm {
+namespace {
+
+using nlohmann::json;
+using test::Float3;
+using test::GltfBuilder;
+
+constexpr float float_nan = std::numeric_limits<float>::quiet_NaN();
+
+Scene load_text(const std::string& text) {
+    const test::TemporaryFolder folder;
+    test::write_bytes(folder / "scene.gltf", text);
+    return load_gltf(folder / "scene.gltf");
+}
+
+Scene load(const GltfBuilder& builder) { return load_text(builder.gltf()); }
+
+std::string text_of(const glm::dvec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
+
+void expect_near(const glm::dvec3& value, const glm::dvec3& expected, double tolerance, const std::string& what) {
+    EXPECT_LE(glm::length(value - expected), tolerance)
+        << what << ": " << text_of(value) << " not " << text_of(expected);
+}
+
+/// The corners of every triangle, in order.
+std::vector<glm::dvec3> corners(const Scene& scene) {
+    std::vector<glm::dvec3> points;
+    for (const Triangle& triangle : scene.triangles) {
+        for (const std::uint32_t vertex : triangle.vertex) points.push_back(scene.positions[vertex]);
+    }
+    return points;
+}
+
+void expect_corners(const Scene& scene, const std::vector<glm::dvec3>& expected) {
+    const std::vector<glm::dvec3> found = corners(scene);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        expect_near(found[i], expected[i], 1e-12, fmt::format("corner {}", i));
+    }
+}
+
+/// cross(p1 - p0, p2 - p0), unit.
+glm::dvec3 geometric_normal(const Scene& scene, const Triangle& triangle) {
+    const glm::dvec3 p0 = scene.positions[triangle.vertex[0]];
+    const glm::dvec3 p1 = scene.positions[triangle.vertex[1]], p2 = scene.positions[triangle.vertex[2]];
+    return glm::normalize(glm::cross(p1 - p0, p2 - p0));
+}
+
+/// How many warnings hold all of the parts.
+int warnings_with(const Scene& scene, const std::vector<std::string>& parts) {
+    return int(std::ranges::count_if(scene.warnings, [&](const std::string& line) {
+        return std::ranges::all_of(parts, [&](const std::string& part) { return line.find(part) != line.npos; });
+    }));
+}
+
+std::string all_warnings(const Scene& scene) { return fmt::format("{}", fmt::join(scene.warnings, "\n")); }
+
+#define EXPECT_ONE_WARNING(scene, ...) \
+    EXPECT_EQ(warnings_with(scene, {__VA_ARGS__}), 1) << "the warnings are:\n" << all_warnings(scene)
+
+// ---- containers and scenes ----
+
+TEST(Gltf, ReadsEmbeddedExternalAndContainedBuffersAlike) {
+    const GltfBuilder builder = test::one_triangle();
+    const test::TemporaryFolder folder;
+    test::write_bytes(folder / "embedded.gltf", builder.gltf());
+    test::write_bytes(folder / "external.gltf", builder.gltf_with_uri("my%20data.bin"));
+    test::write_bytes(folder / "my data.bin", builder.bytes() + "bytes past byteLength");
+    test::write_bytes(folder / "contained.glb", builder.glb());
+    for (const char* name : {"embedded.gltf", "external.gltf", "contained.glb"}) {
+        SCOPED_TRACE(name);
+        const Scene scene = load_gltf(folder / name);
+        expect_corners(scene, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+        EXPECT_EQ(scene.file, folder / name);
+    }
+}
+
+/// FNV-1a by its definition: 64 bits, byte by byte.
+std::uint64_t fnv1a(const std::string& bytes) {
+    std::uint64_t hash = 14695981039346656037u;
+    for (const char c : bytes) hash = (hash ^ std::uint8_t(c)) * 1099511628211u;
+    return hash;
+}
+
+TEST(Gltf, HashesTheFileAndItsExternalBuffers) {
+    const GltfBuilder builder = test::one_triangle();
+    const test::TemporaryFolder folder;
+    const std::string text = builder.gltf_with_uri("data.bin");
+    test::write_bytes(folder / "scene.gltf", text);
+    test::write_bytes(folder / "data.bin", builder.bytes());
+    EXPECT_EQ(load_gltf(folder / "scene.gltf").hash, fnv1a(text + builder.bytes()));
+    test::write_bytes(folder / "scene.glb", builder.glb());
+    EXPECT_EQ(load_gltf(folder / "scene.glb").hash, fnv1a(builder.glb()));
+}
+
+TEST(Gltf, NeedsNoBufferThatNoMeshReads) {
+    GltfBuilder builder = test::one_triangle();
+    json document = json::parse(builder.gltf());
+    document["buffers"].push_back({{"byteLength", 4}, {"uri", "animation.bin"}});
+    document["buffers"].push_back({{"byteLength", 4}});
+    EXPECT_EQ(load_text(document.dump()).triangles.size(), 1u);
+}
+
+TEST(Gltf, TakesTheDefaultSceneElseTheFirstElseAllRoots) {
+    GltfBuilder builder = test::one_triangle();
+    builder.add("nodes", {{"mesh", 0}, {"translation", {10, 0, 0}}, {"children", {2}}});
+    builder.add("nodes", {{"mesh", 0}, {"translation", {100, 0, 0}}});
+    expect_corners(load(builder), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {10, 0, 0}, {11, 0, 0}, {10, 1, 0},
+                                   {110, 0, 0}, {111, 0, 0}, {110, 1, 0}});
+    builder.add("scenes", {{"nodes", {0}}});
+    builder.add("scenes", {{"nodes", {1}}});
+    expect_corners(load(builder), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    builder.document["scene"] = 1;
+    expect_corners(load(builder), {{10, 0, 0}, {11, 0, 0}, {10, 1, 0}, {110, 0, 0}, {111, 0, 0}, {110, 1, 0}});
+}
+
+TEST(Gltf, IsNotRecursiveOverNodes) {
+    GltfBuilder builder = test::one_triangle();
+    builder.document["nodes"] = json::array();
+    constexpr int depth = 20000;
+    for (int i = 0; i < depth; ++i) builder.add("nodes", {{"children", {i + 1}}, {"translation", {1, 0, 0}}});
+    builder.add("nodes", {{"mesh", 0}});
+    expect_corners(load(builder), {{depth, 0, 0}, {depth + 1, 0, 0}, {depth, 1, 0}});
+}
+
+// ---- transforms ----
+
+TEST(Gltf, ComposesTranslationRotationAndScale) {
+    GltfBuilder builder = test::one_triangle();
+    const double half = std::numbers::sqrt2 / 2.0;
+    builder.document["nodes"] = {
+        {{"children", {1}}, {"translation", {10, 20, 30}}, {"rotation", {0, 0, half, half}}, {"scale", {2, 3, 4}}},
+        {{"mesh", 0}, {"translation", {0, 0, 1}}, {"scale", {1, 1, -1}}},
+    };
+    // Child: (x, y, z) -> (x, y, 1 - z). Parent: scaled (2x, 3y, 4z), turned by 90 degrees about z (-y, x, z), moved.
+    const Scene scene = load(builder);
+    // The determinant is negative: the last two corners change places.
+    expect_corners(scene, {{10, 20, 34}, {7, 20, 34}, {10, 22, 34}});
+    expect_near(geometric_normal(scene, scene.triangles[0]), {0, 0, -1}, 1e-12, "geometric normal");
+    for (const glm::vec3& normal : scene.normals) expect_near(normal, {0, 0, -1}, 1e-7, "flat normal");
+}
+
+TEST(Gltf, ReadsAColumnMajorMatrixInDoublePrecision) {
+    GltfBuilder builder = test::one_triangle();
+    const double far = 12345678.0625;  // float would round it to 12345678
+    builder.document["nodes"] = {{{"mesh", 0}, {"matrix", {0, 2, 0, 0, 0, 0, 3, 0, 5, 0, 0, 0, far, -1, -2, 1}}}};
+    // Columns: x -> (0, 2, 0), y -> (0, 0, 3), z -> (5, 0, 0).
+    expect_corners(load(builder), {{far, -1, -2}, {far, 1, -2}, {far, -1, 1}});
+}
+
+TEST(Gltf, TransformsNormalsByTheInverseTranspose) {
+    GltfBuilder builder;
+    // A slope x + z = 1 whose normal (1, 0, 1) / sqrt 2 becomes that of x/2 + z = 1 under the scale (2, 1, 1).
+    const float s = float(std::numbers::sqrt2 / 2.0);
+    const int positions = builder.float3({{1, 0, 0}, {1, 1, 0}, {0, 0, 1}});
+    const int normals = builder.float3({{s, 0, s}, {s, 0, s}, {s, 0, s}});
+    builder.mesh({{"attributes", {{"POSITION", positions}, {"NORMAL", normals}}}});
+    for (const double sign : {1.0, -1.0}) {
+        SCOPED_TRACE(sign);
+        builder.document["nodes"] = {{{"mesh", 0}, {"scale", {2 * sign, 1, 1}}}};
+        const Scene scene = load(builder);
+        const glm::dvec3 expected = glm::normalize(glm::dvec3(0.5 * sign, 0, 1));
+        ASSERT_EQ(scene.triangles.size(), 1u);
+        for (const glm::vec3& normal : scene.normals) expect_near(normal, expected, 1e-7, "shading normal");
+        expect_near(geometric_normal(scene, scene.triangles[0]), expected, 1e-7, "geometric normal");
+    }
+}
+
+TEST(Gltf, DropsAMeshUnderASingularTransformWithAWarning) {
+    GltfBuilder builder = test::one_triangle();
+    builder.document["nodes"] = {
+        {{"mesh", 0}, {"scale", {1, 1, 0}}}, {{"mesh", 0}, {"scale", {0, 0, 0}}}, {{"mesh", 0}}};
+    const Scene scene = load(builder);
+    EXPECT_EQ(scene.triangles.size(), 1u);
+    EXPECT_ONE_WARNING(scene, "nodes[0] (and 1 more)", "singular");
+}
+
+TEST(Gltf, KeepsAMeshUnderATinyScale) {
+    GltfBuilder builder = test::one_triangle();
+    builder.document["nodes"] = {{{"mesh", 0}, {"scale", {1e-30, 1e-30, 1e-30}}}};
+    const Scene scene = load(builder);
+    ASSERT_EQ(scene.triangles.size(), 1u) << all_warnings(scene);
+    expect_near(scene.normals[0], {0, 0, 1}, 1e-7, "normal");
+}
+
+// ---- primitives ----
+
+const std::vector<Float3> square_strip = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+
+TEST(Gltf, WindsStripsAndFansAsTheSpecificationSays) {
+    GltfBuilder builder;
+    const int strip = builder.float3(square_strip);
+    builder.mesh({{"attributes", {{"POSITION", strip}}}, {"mode", 5}});
+    builder.add("nodes", {{"mesh", 0}});
+    // p_i = {v_i, v_(i + 1 + i % 2), v_(i + 2 - i % 2)}
+    const Scene scene = load(builder);
+    expect_corners(scene, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+    for (const Triangle& t : scene.triangles) expect_near(geometric_normal(scene, t), {0, 0, 1}, 1e-12, "strip");
+
+    const int order = builder.u16({0, 1, 3, 2});
+    builder.document["meshes"][0]["primitives"][0] = {
+        {"attributes", {{"POSITION", strip}}}, {"indices", order}, {"mode", 6}};
+    // p_i = {v_(i + 1), v_(i + 2), v_0}
+    const Scene fan = load(builder);
+    expect_corners(fan, {{1, 0, 0}, {1, 1, 0}, {0, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 0}});
+    for (const Triangle& t : fan.triangles) expect_near(geometric_normal(fan, t), {0, 0, 1}, 1e-12, "fan");
+}
+
+TEST(Gltf, SkipsPointsAndLinesWithOneWarning) {
+    GltfBuilder builder = test::one_triangle();
+    for (const int mode : {0, 1, 2, 3}) {
+        builder.document["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}, {"mode", mode}});
+    }
+    const Scene scene = load(builder);
+    EXPECT_EQ(scene.triangles.size(), 1u);
+    EXPECT_ONE_WARNING(scene, "meshes[0].primitives[1] (and 3 more)", "points and lines are skipped");
+}
+
+template <typename T>
+void expect_indices_of_type(int component) {
+    SCOPED_TRACE(component);
+    GltfBuilder builder;
+    const int positions = builder.float3(square_strip);
+    const int indices = builder.accessor(builder.view(std::vector<T>{0, 1, 2, 2, 1, 3}), "SCALAR", component, 6);
+    builder.mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices}});
+    builder.add("nodes", {{"mesh", 0}});
+    expect_corners(load(builder), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}});
+}
+
+TEST(Gltf, ReadsEveryTypeOfIndex) {
+    expect_indices_of_type<std::uint8_t>(5121);
+    expect_indices_of_type<std::uint16_t>(5123);
+    expect_indices_of_type<std::uint32_t>(5125);
+}
+
+/// One triangle whose POSITION has components of type T, plain or normalized.
+template <typename T>
+Scene load_integer_triangle(int component, bool normalized, const std::vector<std::array<T, 4>>& values) {
+    GltfBuilder builder;
+    const int view = builder.view(values);
+    builder.document["bufferViews"][view]["byteStride"] = sizeof values[0];  // the fourth component is padding
+    const int positions = builder.accessor(view, "VEC3", component, values.size());
+    builder.document["accessors"][positions]["normalized"] = normalized;
+    builder.mesh({{"attributes", {{"POSITION", positions}}}});
+    builder.add("nodes", {{"mesh", 0}});
+    return load(builder);
+}
+
+TEST(Gltf, ReadsIntegerAttributesPlainAndNormalized) {
+    expect_corners(load_integer_triangle<std::int8_t>(5120, false, {{0, 0, -7, 9}, {127, 0, 0, 9}, {0, -128, 0, 9}}),
+                   {{0, 0, -7}, {127, 0, 0}, {0, -128, 0}});
+    expect_corners(load_integer_triangle<std::int8_t>(5120, true, {{0, 0, -127, 9}, {127, 0, 0, 9}, {0, -128, 0, 9}}),
+                   {{0, 0, -1}, {1, 0, 0}, {0, -1, 0}});
+    expect_corners(load_integer_triangle<std::uint8_t>(5121, true, {{0, 0, 51, 9}, {255, 0, 0, 9}, {0, 102, 0, 9}}),
+                   {{0, 0, 0.2}, {1, 0, 0}, {0, 0.4, 0}});
+    expect_corners(load_integer_triangle<std::int16_t>(5122, true, {{0, 0, -32768, 9}, {32767, 0, 0, 9}, {0, 1, 0, 9}}),
+                   {{0, 0, -1}, {1, 0, 0}, {0, 1.0 / 32767, 0}});
+    expect_corners(load_integer_triangle<std::uint16_t>(5123, false, {{0, 0, 3, 9}, {65535, 0, 0, 9}, {0, 256, 0, 9}}),
+                   {{0, 0, 3}, {65535, 0, 0}, {0, 256, 0}});
+}
+
+TEST(Gltf, ReadsInterleavedAttributes) {
+    GltfBuilder builder;
+    const int view = builder.view<Float3>({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 0, 1}, {0, 1, 0}, {0, 0, 1}});
+    builder.document["bufferViews"][view]["byteStride"] = 24;
+    const int positions = builder.accessor(view, "VEC3", 5126, 3), normals = builder.accessor(view, "VEC3", 5126, 3);
+    builder.document["accessors"][normals]["byteOffset"] = 12;
+    builder.mesh({{"attributes", {{"POSITION", positions}, {"NORMAL", normals}}}});
+    builder.add("nodes", {{"mesh", 0}});
+    const Scene scene = load(builder);
+    expect_corners(scene, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    ASSERT_EQ(scene.normals.size(), 3u);
+    for (const glm::vec3& normal : scene.normals) EXPECT_EQ(normal, glm::vec3(0, 0, 1));
+}
+
+TEST(Gltf, AppliesSparseValuesOverABaseAndOverZeros) {
+    GltfBuilder builder = test::one_triangle();
+    const int indices = builder.view<std::uint8_t>({1, 2}), values = builder.view<Float3>({{5, 0, 0}, {0, 6, 0}});
+    const json sparse = {{"count", 2},
+                         {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
+                         {"values", {{"bufferView", values}}}};
+    builder.document["accessors"][0]["sparse"] = sparse;
+    expect_corners(load(builder), {{0, 0, 0}, {5, 0, 0}, {0, 6, 0}});
+    builder.document["accessors"][0].erase("bufferView");
+    expect_corners(load(builder), {{0, 0, 0}, {5, 0, 0}, {0, 6, 0}});
+}
+
+TEST(Gltf, ReadsAnAccessorWithoutAViewAsZeros) {
+    GltfBuilder builder = test::one_triangle();
+    const int zeros = builder.add("accessors", {{"componentType", 5123}, {"type", "SCALAR"}, {"count", 3}});
+    builder.document["meshes"][0]["primitives"][0]["indices"] = zeros;
+    const Scene scene = load(builder);  // the vertices 0, 0, 0
+    EXPECT_TRUE(scene.triangles.empty());
+    EXPECT_ONE_WARNING(scene, "zero area: 1 dropped");
+}
+
+TEST(Gltf, GivesFlatNormalsAndUnsharedVerticesWhereTheyAreMissing) {
+    GltfBuilder builder;
+    const int positions = builder.float3({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+    builder.mesh({{"attributes", {{"POSITION", positions}}}, {"indices", builder.u16({0, 1, 2, 0, 3, 1})}});
+    builder.add("nodes", {{"mesh", 0}});
+    const Scene scene = load(builder);
+    ASSERT_EQ(scene.positions.size(), 6u);
+    for (const std::uint32_t vertex : scene.triangles[0].vertex) EXPECT_EQ(scene.normals[vertex], glm::vec3(0, 0, 1));
+    for (const std::uint32_t vertex : scene.triangles[1].vertex) EXPECT_EQ(scene.normals[vertex], glm::vec3(0, 1, 0));
+}
+
+TEST(Gltf, ReplacesNormalsWithoutDirectionByTheGeometricOne) {
+    GltfBuilder builder = test::one_triangle();
+    const int normals = builder.float3({{0, 0, 0}, {float_nan, 0, 0}, {0, 3, 4}});
+    builder.document["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = normals;
+    const Scene scene = load(builder);
+    ASSERT_EQ(scene.triangles.size(), 1u);
+    const auto& vertex = scene.triangles[0].vertex;
+    EXPECT_EQ(scene.normals[vertex[0]], glm::vec3(0, 0, 1));
+    EXPECT_EQ(scene.normals[vertex[1]], glm::vec3(0, 0, 1));
+    expect_near(scene.normals[vertex[2]], {0, 0.6, 0.8}, 1e-7, "a normal of length 5");
+    EXPECT_ONE_WARNING(scene, "a normal (and 1 more)");
+}
+
+TEST(Gltf, DropsDegenerateTrianglesWithOneWarningThatCountsThem) {
+    GltfBuilder builder;
+    const int positions = builder.float3({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}});
+    const int indices = builder.u16({0, 1, 2, 0, 0, 1, 0, 1, 3});
+    builder.mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices}});
+    builder.add("nodes", {{"mesh", 0}});
+    const Scene scene = load(builder);
+    EXPECT_EQ(scene.triangles.size(), 1u);
+    EXPECT_ONE_WARNING(scene, "zero area: 2 dropped");
+}
+
+TEST(Gltf, SharesTheVerticesOfPrimitivesWithTheSameAttributes) {
+    GltfBuilder builder;
+    const int positions = builder.float3(square_strip);
+    const int normals = builder.float3({{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}});
+    const json attributes = {{"POSITION", positions}, {"NORMAL", normals}};
+    builder.mesh({{"attributes", attributes}, {"indices", builder.u16({0, 1, 2})}});
+    builder.document["meshes"][0]["primitives"].push_back(
+        {{"attributes", attributes}, {"indices", builder.u16({2, 1, 3})}});
+    builder.document["nodes"] = {{{"mesh", 0}}, {{"mesh", 0}, {"translation", {0, 0, 5}}}};
+    const Scene scene = load(builder);
+    EXPECT_EQ(scene.positions.size(), 8u);  // four an instance
+    expect_corners(scene, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0},
+                           {0, 0, 5}, {1, 0, 5}, {0, 1, 5}, {0, 1, 5}, {1, 0, 5}, {1, 1, 5}});
+}
+
+TEST(Gltf, IgnoresSkinsMorphTargetsAnimationsColoursAndAlphaWithOneWarningEach) {
+    GltfBuilder builder = test::one_triangle();
+    json& primitive = builder.document["meshes"][0]["primitives"][0];
+    primitive["targets"] = {{{"POSITION", 0}}};
+    primitive["attributes"]["COLOR_0"] = 0;
+    primitive["material"] = builder.add("materials", {{"alphaMode", "BLEND"}});
+    builder.document["nodes"][0]["skin"] = builder.add("skins", {{"joints", {0}}});
+    builder.add("animations", json::object());
+    const Scene scene = load(builder);
+    expect_corners(scene, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    EXPECT_ONE_WARNING(scene, "nodes[0]", "skin");
+    EXPECT_ONE_WARNING(scene, "meshes[0].primitives[0]", "morph targets");
+    EXPECT_ONE_WARNING(scene, "meshes[0].primitives[0]", "vertex colours");
+    EXPECT_ONE_WARNING(scene, "materials[0].alphaMode");
+    EXPECT_ONE_WARNING(scene, "animations");
+}
+
+TEST(Gltf, SaysWhereThereIsNoTriangleAndNoLight) {
+    const Scene scene = load_text(R"({"asset": {"version": "2.0"}})");
+    EXPECT_ONE_WARNING(scene, "no triangle");
+    EXPECT_ONE_WARNING(scene, "no light");
+    EXPECT_EQ(scene.cameras.size(), 1u);
+}
+
+// ---- cameras ----
+
+GltfBuilder with_camera(const json& camera, json node) {
+    GltfBuilder builder = test::one_triangle();
+    node["camera"] = builder.add("cameras", camera);
+    builder.add("nodes", node);
+    return builder;
+}
+
+TEST(Gltf, ReadsAPerspectiveCameraAndRemovesItsScale) {
+    const double half = std::numbers::sqrt2 / 2.0;
+    const json camera = {{"type", "perspective"}, {"name", "eye"},
+                         {"perspective", {{"yfov", 0.5}, {"znear", 0.1}, {"aspectRatio", 1.5}}}};
+    // Turned by 90 degrees about y: it looks along -x, its right hand is -z.
+    const json node = {{"translation", {1, 2, 3}}, {"rotation", {0, half, 0, half}}, {"scale", {2, 5, 7}}};
+    const Scene scene = load(with_camera(camera, node));
+    ASSERT_EQ(scene.cameras.size(), 1u);
+    const Camera& eye = scene.cameras[0];
+    EXPECT_EQ(eye.name, "eye");
+    EXPECT_EQ(eye.yfov, 0.5);
+    EXPECT_EQ(eye.aspect, 1.5);
+    expect_near(eye.to_world[0], {0, 0, -1}, 1e-12, "right");
+    expect_near(eye.to_world[1], {0, 1, 0}, 1e-12, "up");
+    expect_near(eye.to_world[2], {1, 0, 0}, 1e-12, "backward");
+    expect_near(eye.to_world[3], {1, 2, 3}, 1e-12, "position");
+    EXPECT_EQ(eye.to_world[3].w, 1.0);
+}
+
+TEST(Gltf, NamesACameraByItsNodeWhereItHasNoName) {
+    const json camera = {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}};
+    const Scene scene = load(with_camera(camera, {{"name", "tripod"}}));
+    ASSERT_EQ(scene.cameras.size(), 1u);
+    EXPECT_EQ(scene.cameras[0].name, "tripod");
+    EXPECT_EQ(scene.cameras[0].aspect, std::nullopt);
+}
+
+TEST(Gltf, KeepsAMirroredCameraRightHanded) {
+    const json camera = {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}};
+    const Scene scene = load(with_camera(camera, {{"scale", {-1, 1, 1}}}));
+    const glm::dmat4& m = scene.cameras.at(0).to_world;
+    expect_near(glm::cross(glm::dvec3(m[0]), glm::dvec3(m[1])), m[2], 1e-12, "x cross y");
+}
+
+/// The largest angle between the view direction and a corner of the scene, rad.
+double widest_angle(const Scene& scene, const Camera& camera) {
+    double widest = 0.0;
+    for (const glm::dvec3& corner : corners(scene)) {
+        const glm::dvec3 to_corner = glm::normalize(corner - glm::dvec3(camera.to_world[3]));
+        widest = std::max(widest, std::acos(glm::dot(to_corner, -glm::dvec3(camera.to_world[2]))));
+    }
+    return widest;
+}
+
+TEST(Gltf, FramesASceneWithoutAPerspectiveCamera) {
+    const json camera = {{"type", "orthographic"},
+                         {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0.1}, {"zfar", 10}}}};
+    GltfBuilder builder = with_camera(camera, json::object());
+    builder.document["nodes"][0]["scale"] = {1000, 10, 10};
+    const Scene scene = load(builder);
+    EXPECT_ONE_WARNING(scene, "cameras[0]", "orthographic");
+    EXPECT_ONE_WARNING(scene, "no perspective camera");
+    ASSERT_EQ(scene.cameras.size(), 1u);
+    const Camera& frame = scene.cameras[0];
+    const double widest = widest_angle(scene, frame);
+    EXPECT_LE(widest, 0.5 * frame.yfov);
+    EXPECT_GE(widest, 0.7 * 0.5 * frame.yfov) << "the scene should fill the picture";
+    EXPECT_GT(frame.to_world[3].z, 0.0) << "from the front";
+    EXPECT_GT(frame.to_world[3].y, 0.0) << "from above";
+}
+
+// ---- lights ----
+
+Scene load_light(const json& light, const json& node) {
+    GltfBuilder builder = test::one_triangle();
+    builder.document["extensionsUsed"] = {"KHR_lights_punctual"};
+    builder.document["extensions"]["KHR_lights_punctual"]["lights"] = {light};
+    json placed = node;
+    placed["extensions"]["KHR_lights_punctual"]["light"] = 0;
+    builder.add("nodes", placed);
+    Scene scene = load(builder);
+    EXPECT_EQ(scene.lights.size(), 1u);
+    scene.lights.resize(1);
+    return scene;
+}
+
+TEST(Gltf, ReadsASpotLightTurnedAboutX) {
+    const double half = std::numbers::sqrt2 / 2.0;
+    const json light = {{"type", "spot"}, {"name", "lamp"}, {"color", {1, 0.5, 0.25}}, {"intensity", 8},
+                        {"spot", {{"innerConeAngle", 0.25}, {"outerConeAngle", 0.5}}}};
+    // Turned by -90 degrees about x: -z becomes -y. The scale must not matter.
+    const Scene scene =
+        load_light(light, {{"translation", {1, 2, 3}}, {"rotation", {-half, 0, 0, half}}, {"scale", {3, 3, 3}}});
+    const PunctualLight& lamp = scene.lights[0];
+    EXPECT_EQ(lamp.kind, PunctualLight::Kind::spot);
+    EXPECT_EQ(lamp.name, "lamp");
+    EXPECT_EQ(lamp.intensity, glm::vec3(8, 4, 2));
+    EXPECT_EQ(lamp.inner_cone, 0.25);
+    EXPECT_EQ(lamp.outer_cone, 0.5);
+    expect_near(lamp.direction, {0, -1, 0}, 1e-12, "direction");
+    expect_near(lamp.position, {1, 2, 3}, 1e-12, "position");
+    EXPECT_EQ(warnings_with(scene, {"no light"}), 0) << all_warnings(scene);
+}
+
+TEST(Gltf, ReadsTheDefaultsOfLights) {
+    const PunctualLight spot = load_light({{"type", "spot"}, {"spot", json::object()}}, json::object()).lights[0];
+    EXPECT_EQ(spot.intensity, glm::vec3(1));
+    EXPECT_EQ(spot.inner_cone, 0.0);
+    EXPECT_NEAR(spot.outer_cone, std::numbers::pi / 4, 1e-9);
+    const PunctualLight sun = load_light({{"type", "directional"}, {"intensity", 3}}, {{"name", "sun"}}).lights[0];
+    EXPECT_EQ(sun.kind, PunctualLight::Kind::directional);
+    EXPECT_EQ(sun.name, "sun");
+    EXPECT_EQ(sun.intensity, glm::vec3(3));
+    EXPECT_EQ(sun.direction, glm::dvec3(0, 0, -1));
+}
+
+TEST(Gltf, IgnoresARangeWithAWarning) {
+    const json light = {{"type", "point"}, {"range", 5}};
+    const Scene scene = load_light(light, {{"translation", {0, 4, 0}}, {"scale", {0, 0, 0}}});
+    EXPECT_EQ(scene.lights[0].kind, PunctualLight::Kind::point);
+    EXPECT_EQ(scene.lights[0].position, glm::dvec3(0, 4, 0));
+    EXPECT_ONE_WARNING(scene, "lights[0].range");
+}
+
+TEST(Gltf, ClampsConesWithAWarning) {
+    const Scene wide = load_light({{"type", "spot"}, {"spot", {{"outerConeAngle", 2.0}}}}, json::object());
+    EXPECT_EQ(wide.lights[0].outer_cone, std::numbers::pi / 2);
+    EXPECT_ONE_WARNING(wide, "outerConeAngle = 2", "clamped");
+    const Scene hard = load_light(
+        {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.5}}}}, json::object());
+    EXPECT_LT(hard.lights[0].inner_cone, hard.lights[0].outer_cone);
+    EXPECT_ONE_WARNING(hard, "innerConeAngle = 0.5", "clamped");
+    const Scene rounded =
+        load_light({{"type", "spot"}, {"spot", {{"outerConeAngle", 1.5707963705062866}}}}, json::object());  // float
+    EXPECT_EQ(rounded.lights[0].outer_cone, std::numbers::pi / 2);
+    EXPECT_EQ(warnings_with(rounded, {"clamped"}), 0) << all_warnings(rounded);
+}
+
+// ---- materials and extensions ----
+
+Scene load_material(const json& material) {
+    GltfBuilder builder = test::one_triangle();
+    builder.document["meshes"][0]["primitives"][0]["material"] = builder.add("materials", material);
+    builder.document["textures"] = {json::object()};
+    return load(builder);
+}
+
+TEST(Gltf, ReadsEveryFactorOfAMaterial) {
+    const Material m = load_material({
+        {"name", "all"},
+        {"doubleSided", true},
+        {"pbrMetallicRoughness",
+         {{"baseColorFactor", {0.1, 0.2, 0.3, 0.5}}, {"metallicFactor", 0.25}, {"roughnessFactor", 0.75}}},
+        {"emissiveFactor", {1, 0.5, 0.25}},
+        {"extensions",
+         {{"KHR_materials_emissive_strength", {{"emissiveStrength", 5000000000}}},  // above 2^32
+          {"KHR_materials_transmission", {{"transmissionFactor", 0.9}}},
+          {"KHR_materials_ior", {{"ior", 1.6}}},
+          {"KHR_materials_volume",
+           {{"thicknessFactor", 2}, {"attenuationDistance", 3}, {"attenuationColor", {0.5, 0.6, 0.7}}}},
+          {"KHR_materials_specular", {{"specularFactor", 0}, {"specularColorFactor", {1, 2, 3}}}}}},
+    }).materials.at(0);
+    EXPECT_EQ(m.name, "all");
+    EXPECT_TRUE(m.double_sided);
+    EXPECT_EQ(m.base_color, glm::vec3(0.1f, 0.2f, 0.3f));
+    EXPECT_EQ(m.metallic, 0.25f);
+    EXPECT_EQ(m.roughness, 0.75f);
+    EXPECT_EQ(m.emission, glm::vec3(5e9f, 2.5e9f, 1.25e9f));
+    EXPECT_EQ(m.transmission, 0.9f);
+    EXPECT_EQ(m.ior, 1.6f);
+    EXPECT_EQ(m.thickness, 2.0f);
+    EXPECT_EQ(m.attenuation_distance, 3.0f);
+    EXPECT_EQ(m.attenuation_color, glm::vec3(0.5f, 0.6f, 0.7f));
+    EXPECT_EQ(m.specular, 0.0f);
+    EXPECT_EQ(m.specular_color, glm::vec3(1, 2, 3));
+    EXPECT_FALSE(m.textured);
+}
+
+TEST(Gltf, GivesGltfsDefaultsToAnEmptyMaterialAndToNone) {
+    const Scene none = load(test::one_triangle());
+    ASSERT_EQ(none.materials.size(), 1u);
+    EXPECT_EQ(none.triangles.at(0).material, 0u);
+    for (const Material& m : {load_material(json::object()).materials.at(0), none.materials[0]}) {
+        EXPECT_EQ(m.base_color, glm::vec3(1));
+        EXPECT_EQ(m.metallic, 1.0f);
+        EXPECT_EQ(m.roughness, 1.0f);
+        EXPECT_EQ(m.emission, glm::vec3(0));
+        EXPECT_EQ(m.transmission, 0.0f);
+        EXPECT_EQ(m.thickness, 0.0f);
+        EXPECT_EQ(m.ior, 1.5f);
+        EXPECT_EQ(m.specular, 1.0f);
+        EXPECT_EQ(m.specular_color, glm::vec3(1));
+        EXPECT_EQ(m.attenuation_distance, std::numeric_limits<float>::infinity());
+        EXPECT_FALSE(m.double_sided);
+    }
+}
+
+TEST(Gltf, KeepsAnIorOfZeroThatStandsForInfinity) {
+    EXPECT_EQ(load_material({{"extensions", {{"KHR_materials_ior", {{"ior", 0}}}}}}).materials.at(0).ior, 0.0f);
+}
+
+TEST(Gltf, ClampsFactorsOutsideTheirRangeWithOneWarning) {
+    const Scene scene = load_material({{"pbrMetallicRoughness", {{"metallicFactor", 3}, {"roughnessFactor", -1}}},
+                                       {"extensions", {{"KHR_materials_ior", {{"ior", 0.5}}}}}});
+    EXPECT_EQ(scene.materials.at(0).metallic, 1.0f);
+    EXPECT_EQ(scene.materials.at(0).roughness, 0.0f);
+    EXPECT_EQ(scene.materials.at(0).ior, 1.0f);
+    EXPECT_ONE_WARNING(scene, "materials[0].metallicFactor = 3", "(and 2 more)", "clamped");
+}
+
+TEST(Gltf, FlagsMaterialsWithTexturesAndNeedsNoImage) {
+    for (const json& material : {
+             json{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}},
+             json{{"normalTexture", {{"index", 0}}}},
+             json{{"extensions", {{"KHR_materials_specular", {{"specularTexture", {{"index", 0}}}}}}}},
+         }) {
+        SCOPED_TRACE(material.dump());
+        const Scene scene = load_material(material);
+        EXPECT_TRUE(scene.materials.at(0).textured);
+        EXPECT_ONE_WARNING(scene, "textures: ignored in 1 of 1 materials");
+    }
+}
+
+TEST(Gltf, WarnsOnceOfAllUnknownExtensions) {
+    GltfBuilder builder = test::one_triangle();
+    builder.document["extensionsUsed"] = {"KHR_materials_ior", "VENDOR_a", "KHR_mesh_quantization", "VENDOR_b"};
+    builder.document["extensionsRequired"] = {"KHR_mesh_quantization", "KHR_materials_ior"};
+    const Scene scene = load(builder);
+    EXPECT_ONE_WARNING(scene, "\"VENDOR_a\", \"VENDOR_b\"");
+    EXPECT_EQ(warnings_with(scene, {"KHR_"}), 0) << all_warnings(scene);
+}
+
+}  // namespace
+}  // namespace vkcppm

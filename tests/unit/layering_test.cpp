@@ -1,0 +1,108 @@
+// Who may include whom under host/: core <- {scene, vk, io} <- render <- app <- main, and the libraries that one place
+// alone may see.
+
+#include <filesystem>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "support/files.h"
+
+namespace vkcppm {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Folder of the includer ("" for main.cpp) to the folders whose headers it may include. "shared" is shaders/shared,
+/// which the kernels are compiled from as well.
+const std::map<std::string, std::set<std::string>> allowed = {
+    {"core", {"core"}},
+    {"scene", {"core", "scene"}},
+    {"vk", {"core", "vk", "shared"}},
+    {"io", {"core", "io"}},
+    {"render", {"core", "scene", "vk", "io", "render", "shared"}},
+    {"app", {"core", "scene", "vk", "io", "render", "app"}},
+    {"", {"app"}},
+};
+
+/// A library's headers and the only files that may include them, as patterns of the whole name.
+struct Confined {
+    const char* header;
+    const char* includer;
+};
+const std::vector<Confined> confined = {
+    {R"((.*/)?tiny_gltf\.h)", R"(scene/gltf\.cpp)"},
+    {R"((vulkan|vk_video)/.*)", R"(vk/.*)"},
+    {R"((OpenEXR/|Imath/)?(Imf|Imath|Iex|half).*\.h)", R"(io/.*)"},
+    {R"(png\.h)", R"(io/.*)"},
+    {R"(CLI/.*)", R"(app/.*)"},
+};
+
+/// What breaks the rules in a file of that name (relative to host/) and text, a line each.
+std::vector<std::string> violations(const std::string& name, const std::string& text) {
+    static const std::regex include(R"re(#[ \t]*include[ \t]*(["<])([^">]+)[">])re");
+    std::vector<std::string> found;
+    const std::string folder = fs::path(name).parent_path().string();
+    for (std::sregex_iterator it(text.begin(), text.end(), include), end; it != end; ++it) {
+        const std::string header = (*it)[2];
+        const std::string told = name + " includes " + header;
+        const std::string owner = header.substr(0, header.find('/'));
+        // Embedded SPIR-V has no folder; everything else of the project is named from host/ or shaders/.
+        if ((*it)[1] == "\"" && !header.ends_with(".spv.inc") && !allowed.at(folder).contains(owner)) {
+            found.push_back(told + ": '" + folder + "' may not look into '" + owner + "'");
+        }
+        for (const Confined& rule : confined) {
+            if (std::regex_match(header, std::regex(rule.header)) &&
+                !std::regex_match(name, std::regex(rule.includer))) {
+                found.push_back(told + ": that is for " + rule.includer + " alone");
+            }
+        }
+    }
+    return found;
+}
+
+TEST(Layering, TheRulesCatchWhatTheyForbid) {
+    EXPECT_EQ(violations("scene/a.cpp", "#include \"vk/device.h\"\n").size(), 1u);
+    EXPECT_EQ(violations("vk/a.cpp", "  #  include \"scene/scene.h\"\n").size(), 1u);
+    EXPECT_EQ(violations("io/a.h", "#include \"render/render.h\"\n").size(), 1u);
+    EXPECT_EQ(violations("core/a.h", "#include \"io/exr.h\"\n").size(), 1u);
+    EXPECT_EQ(violations("render/a.h", "#include \"app/run.h\"\n").size(), 1u);
+    EXPECT_EQ(violations("main.cpp", "#include \"render/render.h\"\n").size(), 1u);
+    EXPECT_EQ(violations("render/a.cpp", "#include <vulkan/vulkan_raii.hpp>\n").size(), 1u);
+    EXPECT_EQ(violations("scene/scene.cpp", "#include <tiny_gltf.h>\n").size(), 1u);
+    EXPECT_EQ(violations("render/a.cpp", "#include <ImfHeader.h>\n#include <half.h>\n#include <png.h>\n").size(), 3u);
+    EXPECT_EQ(violations("io/a.cpp", "#include <CLI/CLI.hpp>\n").size(), 1u);
+    EXPECT_EQ(violations("scene/a.cpp", "#include \"sibling.h\"\n").size(), 1u);
+}
+
+TEST(Layering, TheRulesAllowWhatTheDesignDoes) {
+    EXPECT_TRUE(violations("scene/gltf.cpp", "#include <tiny_gltf.h>\n#include \"core/error.h\"\n").empty());
+    EXPECT_TRUE(violations("vk/a.cpp", "#include <vulkan/vulkan_raii.hpp>\n").empty());
+    EXPECT_TRUE(violations("render/a.cpp", "#include \"shared/camera.h\"\n#include \"eye.spv.inc\"\n").empty());
+    EXPECT_TRUE(violations("main.cpp", "#include \"app/run.h\"\n").empty());
+}
+
+TEST(Layering, EveryFileOfTheHostKeepsTheRules) {
+    const fs::path host = fs::path(VKCPPM_SOURCE_DIR) / "host";
+    std::set<std::string> folders;
+    for (const auto& entry : fs::recursive_directory_iterator(host)) {
+        if (!entry.is_regular_file()) {
+            continue;
+        }
+        const fs::path name = fs::relative(entry.path(), host);
+        const std::string folder = name.parent_path().string();
+        ASSERT_TRUE(allowed.contains(folder)) << name << " lies in a folder that the design does not know";
+        folders.insert(folder);
+        for (const std::string& violation : violations(name.string(), test::read_bytes(entry.path()))) {
+            ADD_FAILURE() << violation;
+        }
+    }
+    EXPECT_EQ(folders.size(), allowed.size()) << "not every folder of the design was seen";
+}
+
+}  // namespace
+}  // namespace vkcppm

@@ -1,0 +1,204 @@
+#include "app/options.h"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "support/thrown.h"
+
+namespace vkcppm {
+namespace {
+
+Options parse(const std::vector<std::string>& words) {
+    std::vector<const char*> argv{"vkcppm"};
+    for (const std::string& word : words) {
+        argv.push_back(word.c_str());
+    }
+    return parse_options(int(argv.size()), argv.data());
+}
+
+RenderOptions parse_render(std::vector<std::string> words) {
+    words.insert(words.begin(), "scene.gltf");
+    return std::get<RenderOptions>(parse(words));
+}
+
+TEST(Options, DefaultsAreThePapers) {
+    const RenderOptions options = parse_render({});
+    EXPECT_EQ(options.scene, "scene.gltf");
+    EXPECT_EQ(options.output, "scene.exr");
+    EXPECT_EQ(options.settings.estimator, "cppm");
+    EXPECT_EQ(options.settings.iterations, 64u);
+    EXPECT_FALSE(options.settings.seconds);
+    EXPECT_EQ(options.settings.photons, 65536u);
+    EXPECT_FALSE(options.settings.size);
+    EXPECT_EQ(options.settings.camera, "");
+    EXPECT_EQ(options.settings.max_depth, 64u);
+    EXPECT_EQ(options.settings.knn, 10u);
+    EXPECT_DOUBLE_EQ(options.settings.alpha, 2.0 / 3.0);
+    EXPECT_DOUBLE_EQ(options.settings.k, 0.8);
+    EXPECT_DOUBLE_EQ(options.settings.beta, 1.2);
+    EXPECT_DOUBLE_EQ(options.settings.significance, 0.05);
+    EXPECT_EQ(options.settings.rings, 2u);
+    EXPECT_EQ(options.settings.sectors, 6u);
+    EXPECT_EQ(options.device.select, "");
+    EXPECT_FALSE(options.device.validate);
+    EXPECT_FALSE(options.png || options.stats || options.quiet || options.verbose);
+}
+
+TEST(Options, EveryOptionReachesItsSetting) {
+    const RenderOptions options = parse_render({
+        "-o", "o.exr", "--png", "p.png", "--exposure", "-1.5", "--stats", "s.json", "--estimator", "sppm",
+        "--iterations", "7", "--time", "2m", "--photons", "100", "--size", "32x16", "--camera", "top", "--seed", "5",
+        "--max-depth", "9", "--knn", "11", "--alpha", "0.5", "--k", "0.25", "--beta", "1.5", "--significance", "0.01",
+        "--rings", "3", "--sectors", "4", "--device", "uuid:00", "--quiet", "--verbose", "--validate"});
+    EXPECT_EQ(options.output, "o.exr");
+    EXPECT_EQ(options.png, "p.png");
+    EXPECT_EQ(options.exposure, -1.5);
+    EXPECT_EQ(options.settings.estimator, "sppm");
+    EXPECT_EQ(options.settings.iterations, 7u);
+    EXPECT_EQ(options.settings.seconds, 120.0);
+    EXPECT_EQ(options.settings.photons, 100u);
+    EXPECT_EQ(options.settings.size, (Extent{32, 16}));
+    EXPECT_EQ(options.settings.camera, "top");
+    EXPECT_EQ(options.settings.seed, 5u);
+    EXPECT_EQ(options.settings.max_depth, 9u);
+    EXPECT_EQ(options.settings.knn, 11u);
+    EXPECT_EQ(options.settings.alpha, 0.5);
+    EXPECT_EQ(options.settings.k, 0.25);
+    EXPECT_EQ(options.settings.beta, 1.5);
+    EXPECT_EQ(options.settings.significance, 0.01);
+    EXPECT_EQ(options.settings.rings, 3u);
+    EXPECT_EQ(options.settings.sectors, 4u);
+    EXPECT_EQ(options.device.select, "uuid:00");
+    EXPECT_EQ(options.stats, "s.json");
+    EXPECT_TRUE(options.quiet && options.verbose && options.device.validate);
+}
+
+TEST(Options, TimeHasUnits) {
+    const std::vector<std::pair<std::string, double>> times = {
+        {"90", 90.0}, {"90s", 90.0}, {"2m", 120.0}, {"1.5h", 5400.0}, {"500ms", 0.5}, {"1e2", 100.0}, {".5s", 0.5}};
+    for (const auto& [text, seconds] : times) {
+        EXPECT_DOUBLE_EQ(parse_render({"--time", text}).settings.seconds.value_or(-1.0), seconds) << text;
+    }
+}
+
+TEST(Options, TimeAloneLiftsTheBoundOnIterations) {
+    EXPECT_EQ(parse_render({"--time", "5"}).settings.iterations, 2147483647u);
+    EXPECT_EQ(parse_render({"--time", "5", "--iterations", "3"}).settings.iterations, 3u);
+}
+
+TEST(Options, TheLargestIntegersFit) {
+    EXPECT_EQ(parse_render({"--seed", "4294967295"}).settings.seed, 4294967295u);
+    EXPECT_EQ(parse_render({"--seed", "007"}).settings.seed, 7u) << "leading zeros are decimal";
+}
+
+TEST(Options, ThePictureIsNamedAfterTheSceneAndLiesHere) {
+    EXPECT_EQ(std::get<RenderOptions>(parse({"/far/away/box.v2.glb"})).output, "box.v2.exr");
+}
+
+TEST(Options, TheFirstWordChoosesTheCommand) {
+    const auto compare = std::get<CompareOptions>(parse({"compare", "a.exr", "b.exr", "--json"}));
+    EXPECT_EQ(compare.image, "a.exr");
+    EXPECT_EQ(compare.reference, "b.exr");
+    EXPECT_TRUE(compare.json);
+    const auto info = std::get<InfoOptions>(parse({"info", "--json", "a.glb"}));
+    EXPECT_EQ(info.scene, "a.glb");
+    EXPECT_TRUE(info.json);
+    EXPECT_FALSE(std::get<DevicesOptions>(parse({"devices"})).json);
+    EXPECT_EQ(std::get<RenderOptions>(parse({"./compare"})).scene, "./compare");
+    EXPECT_EQ(std::get<RenderOptions>(parse({"--quiet", "info"})).scene, "info");
+}
+
+TEST(Options, HelpNamesEveryOptionAndEstimator) {
+    const std::string help = std::get<TextOptions>(parse({"--help"})).text;
+    for (const char* name :
+         {"SCENE", "-o", "--estimator", "--iterations", "--time", "--photons", "--size", "--camera", "--seed",
+          "--max-depth", "--knn", "--alpha", "--k ", "--beta", "--significance", "--device", "--stats", "--quiet",
+          "--verbose", "--png", "--exposure", "--rings", "--sectors", "--validate", "--version", "cppm", "sppm:",
+          "sppm-kz", "compare", "info", "devices", "73"}) {
+        EXPECT_NE(help.find(name), std::string::npos) << name << " is not in\n" << help;
+    }
+    EXPECT_NE(std::get<TextOptions>(parse({"compare", "--help"})).text.find("REFERENCE"), std::string::npos);
+    EXPECT_EQ(std::get<TextOptions>(parse({"--version"})).text.substr(0, 7), "vkcppm ");
+}
+
+struct BadLine {
+    std::vector<std::string> words;
+    std::vector<std::string> told;  // parts of the message
+};
+
+TEST(Options, RefuseEveryBadLineWithOptionValueAndRange) {
+    const std::vector<BadLine> lines = {
+        {{}, {"SCENE"}},
+        {{"s", "t"}, {"t"}},
+        {{"s", "--bogus"}, {"--bogus"}},
+        {{"s", "--bogus=1"}, {"--bogus"}},
+        {{"s", "-x"}, {"-x"}},
+        {{"s", "--iter", "5"}, {"--iter"}},
+        {{"s", "--photons"}, {"--photons"}},
+        {{"s", "--photons", ""}, {"--photons", "''", "whole number", "4294967295"}},
+        {{"s", "--photons", "-1"}, {"--photons", "'-1'", "whole number", "4294967295"}},
+        {{"s", "--photons=-1"}, {"--photons", "'-1'"}},
+        {{"s", "--photons", "4294967296"}, {"--photons", "'4294967296'", "4294967295"}},
+        {{"s", "--photons", "99999999999999999999999"}, {"--photons", "'99999999999999999999999'"}},
+        {{"s", "--photons", "1.5"}, {"--photons", "'1.5'"}},
+        {{"s", "--photons", "1e3"}, {"--photons", "'1e3'"}},
+        {{"s", "--photons", "0x10"}, {"--photons", "'0x10'"}},
+        {{"s", "--photons", " 1"}, {"--photons", "' 1'"}},
+        {{"s", "--photons", "many"}, {"--photons", "'many'"}},
+        {{"s", "--photons", "1", "--photons", "2"}, {"--photons"}},
+        {{"s", "--iterations", "-5"}, {"--iterations", "'-5'"}},
+        {{"s", "--seed", "-1"}, {"--seed", "'-1'"}},
+        {{"s", "--max-depth", "x"}, {"--max-depth", "'x'"}},
+        {{"s", "--knn", "x"}, {"--knn", "'x'"}},
+        {{"s", "--rings", "x"}, {"--rings", "'x'"}},
+        {{"s", "--sectors", "x"}, {"--sectors", "'x'"}},
+        {{"s", "--alpha", "nan"}, {"--alpha", "'nan'", "finite"}},
+        {{"s", "--alpha", "inf"}, {"--alpha", "'inf'", "finite"}},
+        {{"s", "--alpha", "1e999"}, {"--alpha", "'1e999'"}},
+        {{"s", "--k", "0,5"}, {"--k", "'0,5'"}},
+        {{"s", "--beta", "x"}, {"--beta", "'x'"}},
+        {{"s", "--significance", "5%"}, {"--significance", "'5%'"}},
+        {{"s", "--time", "0"}, {"--time", "'0'", "greater than 0", "500ms"}},
+        {{"s", "--time", "-3s"}, {"--time", "'-3s'"}},
+        {{"s", "--time", "nan"}, {"--time", "'nan'"}},
+        {{"s", "--time", "inf"}, {"--time", "'inf'"}},
+        {{"s", "--time", "1e308h"}, {"--time", "'1e308h'"}},
+        {{"s", "--time", "5 s"}, {"--time", "'5 s'"}},
+        {{"s", "--time", "5d"}, {"--time", "'5d'"}},
+        {{"s", "--time", "s"}, {"--time", "'s'"}},
+        {{"s", "--size", "64"}, {"--size", "'64'", "WIDTHxHEIGHT"}},
+        {{"s", "--size", "64x"}, {"--size", "'64x'"}},
+        {{"s", "--size", "x64"}, {"--size", "'x64'"}},
+        {{"s", "--size", "64x64x64"}, {"--size", "'64x64x64'"}},
+        {{"s", "--size", "-64x64"}, {"--size", "'-64x64'"}},
+        {{"s", "--size", "64X64"}, {"--size", "'64X64'"}},
+        {{"s", "--size", "4294967296x1"}, {"--size", "'4294967296x1'"}},
+        {{"s", "--exposure", "x", "--png", "p"}, {"--exposure", "'x'"}},
+        {{"s", "--exposure", "1"}, {"--exposure", "--png"}},
+        {{"compare"}, {"IMAGE"}},
+        {{"compare", "a"}, {"REFERENCE"}},
+        {{"compare", "a", "b", "c"}, {"c"}},
+        {{"compare", "a", "b", "--quiet"}, {"--quiet"}},
+        {{"info"}, {"SCENE"}},
+        {{"devices", "x"}, {"x"}},
+    };
+    for (const BadLine& line : lines) {
+        std::string shown;
+        for (const std::string& word : line.words) {
+            shown += " " + word;
+        }
+        const auto error = test::thrown_by([&] { parse(line.words); });
+        ASSERT_TRUE(error) << "taken:" << shown;
+        EXPECT_EQ(int(error->code()), 2) << shown;
+        for (const std::string& part : line.told) {
+            EXPECT_NE(std::string(error->what()).find(part), std::string::npos)
+                << shown << ": '" << part << "' is not in: " << error->what();
+        }
+        EXPECT_EQ(std::string(error->what()).find('\n'), std::string::npos) << error->what();
+    }
+}
+
+}  // namespace
+}  // namespace vkcppm

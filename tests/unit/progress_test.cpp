@@ -1,0 +1,78 @@
+#include "app/progress.h"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace vkcppm {
+namespace {
+
+/// What a ProgressLine writes while `use` works with it.
+template <typename Use> std::string written(bool terminal, std::optional<double> time_limit, Use&& use) {
+    char* text = nullptr;
+    std::size_t size = 0;
+    std::FILE* stream = ::open_memstream(&text, &size);
+    {
+        ProgressLine line(stream, terminal, time_limit);
+        use(line);
+    }
+    std::fclose(stream);
+    const std::string result(text, size);
+    std::free(text);
+    return result;
+}
+
+TEST(Progress, DurationsAreRoundedToWhatMatters) {
+    EXPECT_EQ(duration_text(0.2), "0 s");
+    EXPECT_EQ(duration_text(59.4), "59 s");
+    EXPECT_EQ(duration_text(59.6), "1 min 0 s");
+    EXPECT_EQ(duration_text(200.0), "3 min 20 s");
+    EXPECT_EQ(duration_text(3599.7), "1 h 0 min");
+    EXPECT_EQ(duration_text(7500.0), "2 h 5 min");
+}
+
+TEST(Progress, EstimatesTheTimeLeftFromTheIterations) {
+    EXPECT_EQ(progress_text({16, 64, 30.0}, std::nullopt), "16/64 iterations (25 %), 1 min 30 s left");
+    EXPECT_EQ(progress_text({64, 64, 30.0}, std::nullopt), "64/64 iterations (100 %), 0 s left");
+    EXPECT_EQ(progress_text({0, 64, 0.0}, std::nullopt), "0/64 iterations (0 %)");
+}
+
+TEST(Progress, EndsByTimeOrByIterationsWhicheverIsSooner) {
+    EXPECT_EQ(progress_text({16, 2147483647, 30.0}, 90.0), "16 iterations (33 %), 1 min 0 s left");
+    EXPECT_EQ(progress_text({16, 64, 3.0}, 90.0), "16/64 iterations (25 %), 9 s left");
+    EXPECT_EQ(progress_text({16, 2147483647, 95.0}, 90.0), "16 iterations (100 %), 0 s left");
+}
+
+TEST(Progress, IsALineEveryTenSecondsWhereNobodyWatches) {
+    const std::string text = written(false, std::nullopt, [](ProgressLine& line) {
+        for (std::uint64_t i = 1; i <= 25; ++i) {
+            line.update({i, 25, double(i)});
+        }
+        line.finish({25, 25, 25.0});
+    });
+    EXPECT_EQ(text, "1/25 iterations (4 %), 24 s left\n"
+                    "11/25 iterations (44 %), 14 s left\n"
+                    "21/25 iterations (84 %), 4 s left\n"
+                    "25 iterations in 25.0 s\n");
+}
+
+TEST(Progress, RewritesItsLineOnATerminalAndEndsIt) {
+    const std::string text = written(true, std::nullopt, [](ProgressLine& line) {
+        line.update({1, 4, 1.0});
+        line.update({2, 4, 1.05});  // too soon
+        line.update({3, 4, 3.0});
+        line.finish({4, 4, 4.0});
+    });
+    EXPECT_EQ(text, "\r1/4 iterations (25 %), 3 s left\x1b[K"
+                    "\r3/4 iterations (75 %), 1 s left\x1b[K"
+                    "\r4 iterations in 4.0 s\x1b[K\n");
+}
+
+TEST(Progress, EndsAnOpenLineWhereTheRenderThrows) {
+    EXPECT_EQ(written(true, std::nullopt, [](ProgressLine& line) { line.update({1, 4, 1.0}); }),
+              "\r1/4 iterations (25 %), 3 s left\x1b[K\n");
+    EXPECT_EQ(written(true, std::nullopt, [](ProgressLine&) {}), "");
+}
+
+}  // namespace
+}  // namespace vkcppm
