@@ -159,15 +159,18 @@ Options parse_render(const Words& words) {
     add(app, "--alpha", "X", options.settings.alpha, parse_real,
         fmt::format("sppm, sppm-kz: how slowly the radius shrinks (default: {:.3g})", standard.alpha));
     add(app, "--k", "X", options.settings.k, parse_real,
-        fmt::format("cppm: factor of the area after a rejection (default: {})", standard.k));
+        fmt::format("cppm, ftest: factor of the area after a rejection (default: {})", standard.k));
     add(app, "--beta", "X", options.settings.beta, parse_real,
-        fmt::format("cppm: growth of the batch after a rejection (default: {})", standard.beta));
+        fmt::format("cppm, ftest: growth of the batch after a rejection (default: {})", standard.beta));
     add(app, "--significance", "X", options.settings.significance, parse_real,
-        fmt::format("cppm: level of each test (default: {})", standard.significance));
+        fmt::format("cppm, ftest: level of each test (default: {})", standard.significance));
     add(app, "--rings", "N", options.settings.rings, parse_whole,
-        fmt::format("cppm: rings of the disc (default: {})", standard.rings));
+        fmt::format("cppm, ftest: rings of the disc (default: {})", standard.rings));
     add(app, "--sectors", "N", options.settings.sectors, parse_whole,
-        fmt::format("cppm: sectors of the disc (default: {})", standard.sectors));
+        fmt::format("cppm, ftest: sectors of the disc: 4, 6, 8 or 12 (default: {})", standard.sectors));
+    app.add_flag("--aovs", options.settings.aovs,
+                 "Add channels to the EXR: ppm.radius, ppm.photons, ppm.batch, ppm.rejections, ppm.statistic,\n"
+                 "ppm.iterations, and Z, Albedo, N of the first surfaces");
     app.add_option("--device", options.device.select, "Vulkan device; vkcppm devices lists them (default: the fastest)")
         ->type_name("NAME|INDEX|uuid:...");
     app.add_flag("--validate", options.device.validate,

@@ -72,7 +72,9 @@ void write_outputs(const RenderOptions& options, const Scene& scene, const Rende
             print_message("wrote " + file.string());
         }
     };
-    write_exr(options.output, rendering.image, exr_attributes(scene, rendering));
+    ExrChannels channels = to_channels(rendering.image);
+    channels.values.insert(rendering.aovs.begin(), rendering.aovs.end());
+    write_exr(options.output, channels, exr_attributes(scene, rendering));
     if (interrupted()) {
         print_message(fmt::format("interrupted after {} iterations: wrote {}", rendering.report.iterations,
                                   options.output.string()));

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include <boost/math/distributions/chi_squared.hpp>
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -42,14 +41,17 @@ void set_camera(gpu::Params& params, const Camera& camera, const SceneFrame& fra
     params.pixel_radius = float(2.0 * half_height / double(size.height) / std::sqrt(std::numbers::pi));
 }
 
-void set_test(gpu::Params& params, const Settings& settings) {
-    for (std::uint32_t m = 1; m <= settings.rings; ++m) {
-        const boost::math::chi_squared distribution(double(m * settings.sectors - 1));
-        params.threshold[m - 1] = float(boost::math::quantile(boost::math::complement(distribution, settings.significance)));
-    }
-    for (std::uint32_t s = 0; s < settings.sectors / 2; ++s) {
-        const double angle = 2.0 * std::numbers::pi * double(s) / double(settings.sectors);
-        params.sector_edge[s] = glm::vec2(std::cos(angle), std::sin(angle));
+void set_test(gpu::Params& params, const EstimatorRow& estimator, const Settings& settings) {
+    const std::vector<float> thresholds =
+        chi_squared_thresholds(estimator, settings.rings, settings.sectors, settings.significance);
+    std::copy(thresholds.begin(), thresholds.end(), params.threshold);
+    const auto direction = [&](double sector) {
+        const double angle = 2.0 * std::numbers::pi * sector / double(settings.sectors);
+        return glm::vec2(std::cos(angle), std::sin(angle));
+    };
+    for (std::uint32_t s = 0; s < settings.sectors; ++s) {
+        if (s < settings.sectors / 2) params.sector_edge[s] = direction(s);
+        params.sector_centre[s] = direction(s + 0.5);
     }
 }
 
@@ -58,11 +60,12 @@ void set_test(gpu::Params& params, const Settings& settings) {
 Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings)
     : device_(device), bindings_(device), commands_(device, bindings_, timed_launches) {
     const EstimatorRow& estimator = find_estimator(settings.estimator);
+    scale_ = scene.frame.scale;
     pixels_ = settings.size->pixels();
     for (const Pass pass : {Pass::eye, Pass::photon, Pass::knn, Pass::gather}) rounds_[pass] = 1;
 
     set_camera(params_, camera, scene.frame, *settings.size);
-    set_test(params_, settings);
+    set_test(params_, estimator, settings);
     params_.seed = settings.seed;
     params_.bounds_low = scene.low;
     params_.bounds_high = scene.high;
@@ -107,8 +110,14 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     allocate(BIND_HIT_EMISSION, "hit emission", pixels_ * sizeof(gpu::HitEmission), Kind::storage);
     allocate(BIND_GATHERED, "gathered", pixels_ * sizeof(gpu::Gathered), Kind::storage);
     allocate(BIND_PIXELS, "pixels", pixels_ * sizeof(gpu::PixelState), Kind::storage);
-    const std::uint64_t bins = estimator.sectors ? settings.rings * settings.sectors : 0;
-    allocate(BIND_TALLY, "tally", bins * pixels_ * sizeof(std::uint32_t), Kind::storage);
+    const std::uint64_t tallies = tally_rows(estimator, settings.rings, settings.sectors);
+    allocate(BIND_TALLY, "tally", tallies * pixels_ * sizeof(std::uint32_t), Kind::storage);
+    const std::uint64_t moments = moment_rows(estimator, settings.rings, settings.sectors);
+    allocate(BIND_MOMENTS, "moments", moments * pixels_ * sizeof(float), Kind::storage);
+    const std::vector<float> quantiles =
+        f_thresholds(estimator, settings.rings, settings.sectors, settings.significance);
+    upload(BIND_QUANTILES, "quantiles", quantiles, Kind::storage);
+    allocate(BIND_AOVS, "aovs", settings.aovs ? pixels_ * sizeof(gpu::Aovs) : 0, Kind::storage);
     allocate(BIND_FILM, "film", pixels_ * sizeof(gpu::Film), Kind::storage);
     allocate(BIND_CURSOR, "cursors", pixels_ * sizeof(gpu::Cursor), Kind::storage);
     allocate(BIND_NEAREST, "nearest", settings.knn * pixels_ * sizeof(float), Kind::storage);
@@ -122,7 +131,7 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     gpu::PixelState pixel{};
     pixel.batch = float(settings.knn);  // B_1 = k_NN
     buffer(BIND_PIXELS).upload(std::vector<gpu::PixelState>(pixels_, pixel));
-    compile(settings, scene.features, scene.bvh.stack);
+    compile(settings, scene);
 }
 
 void Integrator::allocate(std::uint32_t binding, const std::string& name, std::uint64_t bytes, Buffer::Kind kind) {
@@ -146,9 +155,10 @@ void Integrator::allocate_photons() {
     buffer(BIND_PARAMS).upload_value(params_);
 }
 
-void Integrator::compile(const Settings& settings, std::uint32_t features, std::uint32_t stack) {
+void Integrator::compile(const Settings& settings, const FlatScene& scene) {
+    const std::uint32_t features = scene.features | (settings.aovs ? FEATURE_AOVS : 0u);
     const Specialization specialization = {
-        {SPEC_WORKGROUP, workgroup},       {SPEC_STACK, stack},
+        {SPEC_WORKGROUP, workgroup},       {SPEC_STACK, scene.bvh.stack},
         {SPEC_ESTIMATOR, find_estimator(settings.estimator).id},
         {SPEC_RINGS, settings.rings},      {SPEC_SECTORS, settings.sectors},
         {SPEC_FEATURES, features},         {SPEC_DIGIT_BITS, digit_bits_},
@@ -279,13 +289,47 @@ bool Integrator::unblock() {
 }
 
 Image Integrator::resolve() {
-    commands_.begin();
-    launch("resolve", pixels_, {});
-    finish();
+    run_kernel("resolve", pixels_, {});
     Image image;
     image.extent = {params_.width, params_.height};
     image.rgb = buffer(BIND_IMAGE).download<glm::vec3>(pixels_);
     return image;
+}
+
+std::map<std::string, std::vector<float>> Integrator::aovs() const {
+    const auto states = buffers_.at(BIND_PIXELS).download<gpu::PixelState>(pixels_);
+    const auto sums = buffers_.at(BIND_AOVS).download<gpu::Aovs>(pixels_);
+    std::map<std::string, std::vector<float>> channels;
+    const auto add = [&](const std::string& name, const auto& value) {
+        std::vector<float>& channel = channels[name];
+        for (std::uint64_t i = 0; i < pixels_; ++i) channel.push_back(float(value(states[i], sums[i])));
+    };
+    using State = const gpu::PixelState&;
+    using Sums = const gpu::Aovs&;
+    add("ppm.radius", [&](State s, Sums) { return std::sqrt(double(s.radius2)) / scale_; });
+    add("ppm.photons", [](State s, Sums) { return s.photons; });
+    add("ppm.batch", [](State s, Sums) { return s.batch; });
+    add("ppm.rejections", [](State s, Sums) { return s.rejections; });
+    add("ppm.statistic", [](State s, Sums) { return s.statistic; });
+    add("ppm.iterations", [](State s, Sums) { return s.seen; });
+    const auto mean = [](float sum, Sums a) { return a.hits > 0 ? sum / float(a.hits) : 0.0f; };
+    add("Z", [&](State, Sums a) { return mean(a.depth, a) / scale_; });
+    for (int c = 0; c < 3; ++c) {
+        add(std::string("Albedo.") + "RGB"[c], [&](State, Sums a) { return mean(a.albedo[c], a); });
+        add(std::string("N.") + "XYZ"[c], [&](State, Sums a) { return mean(a.normal[c], a); });
+    }
+    return channels;
+}
+
+void Integrator::set_params(const gpu::Params& params) {
+    params_ = params;
+    buffer(BIND_PARAMS).upload_value(params_);
+}
+
+void Integrator::run_kernel(const std::string& kernel, std::uint64_t invocations, const gpu::Launch& push) {
+    commands_.begin();
+    launch(kernel, invocations, push);
+    finish();
 }
 
 void Integrator::fill(Report& report) const {

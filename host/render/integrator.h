@@ -33,15 +33,21 @@ public:
     /// Mean over the completed iterations.
     Image resolve();
 
+    /// The channels of Rendering::aovs. Asserts that the settings asked for them.
+    std::map<std::string, std::vector<float>> aovs() const;
+
     /// Totals so far: passes, iterations, paths, photons, rays, device memory.
     void fill(Report& report) const;
 
     /// Contributions that were not finite and were dropped.
     std::uint64_t invalid() const { return invalid_; }
 
-    /// For tests: a buffer by its binding (BIND_*).
+    /// For tests, which drive single kernels on states of their own: a buffer by its binding (BIND_*), the parameters
+    /// (uploaded by set_params), one launch of a kernel by its name.
     Buffer& buffer(std::uint32_t binding) { return buffers_.at(binding); }
     const gpu::Params& params() const { return params_; }
+    void set_params(const gpu::Params& params);
+    void run_kernel(const std::string& kernel, std::uint64_t invocations, const gpu::Launch& push);
 
 private:
     /// Passes of an iteration, in order. The first four can run out of steps and go on in another round.
@@ -49,7 +55,7 @@ private:
 
     void allocate(std::uint32_t binding, const std::string& name, std::uint64_t bytes, Buffer::Kind kind);
     void allocate_photons();
-    void compile(const Settings& settings, std::uint32_t features, std::uint32_t stack);
+    void compile(const Settings& settings, const FlatScene& scene);
     void iterate(std::uint32_t iteration, Pass from, std::uint32_t first_round);
     void launch(const std::string& kernel, std::uint64_t invocations, const gpu::Launch& push);
     void launch_rounds(const std::string& kernel, std::uint64_t invocations, Pass pass, std::uint32_t iteration,
@@ -67,6 +73,7 @@ private:
     std::map<std::string, Kernel> kernels_;
     std::map<Pass, std::uint32_t> rounds_;
     std::vector<PassReport> passes_;
+    double scale_ = 1.0;                   // frame units a metre
     std::uint64_t pixels_ = 0;
     std::uint32_t digit_bits_ = 7;
     std::uint32_t digits_ = 3;             // radix passes

@@ -68,6 +68,7 @@ Rendering render(const Scene& scene, const Settings& wanted, Device& device, con
     result.report.wall_seconds = now() - start;
     result.report.cpu_seconds = cpu_now() - cpu_start;
     result.image = integrator.resolve();
+    if (settings.aovs) result.aovs = integrator.aovs();
     integrator.fill(result.report);
     result.report.peak_memory_bytes = peak_memory();
     if (integrator.invalid() > 0) {

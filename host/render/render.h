@@ -2,6 +2,9 @@
 // The straight line: scene -> BVH -> flatten -> upload -> iterate -> resolve -> readback.
 
 #include <functional>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "core/image.h"
 #include "render/report.h"
@@ -25,6 +28,9 @@ struct Rendering {
     Image image;
     Settings settings;                      // as resolved: size and camera filled in
     Report report;
+    /// [P] each, where the settings ask for them: ppm.radius (m), ppm.photons, ppm.batch, ppm.rejections,
+    /// ppm.statistic (over its threshold), ppm.iterations, Z (m along the camera's axis), Albedo.R/G/B, N.X/Y/Z.
+    std::map<std::string, std::vector<float>> aovs;
     std::vector<std::string> warnings;      // what the render leaves out of the scene, one line each
 };
 

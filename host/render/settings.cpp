@@ -76,6 +76,10 @@ Settings resolve_settings(const Settings& settings, const Scene& scene) {
         throw Error(ExitCode::usage, fmt::format("--sectors {} is none of 4, 6, 8, 12", settings.sectors));
     }
     static_assert(MAX_SECTORS == 12);
+    if (estimator.statistic == Statistic::tally && cells(estimator, 1, settings.sectors) < 2 + estimator.fitted) {
+        throw Error(ExitCode::usage, fmt::format("--sectors {} leave the test of {} no degree of freedom",
+                                                 settings.sectors, estimator.name));
+    }
     resolved.estimator = std::string(estimator.name);
 
     const std::size_t camera = find_camera(settings.camera, scene);

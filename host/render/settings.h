@@ -18,13 +18,14 @@ struct Settings {
     std::string camera;                     // name or index; empty: the first
     std::uint32_t seed = 1;
     std::uint32_t max_depth = 64;           // bounces of a light path and of an eye path, 1..1024
-    std::uint32_t knn = 10;                 // k nearest photons give the starting radius, 1..256
+    std::uint32_t knn = 10;                 // k nearest photons give the starting radius, 2..256
     double alpha = 2.0 / 3.0;               // sppm, sppm-kz: 0 < alpha < 1
     double k = 0.8;                         // cppm: area factor where no inner disc passes, 0 < k < 1
     double beta = 1.2;                      // cppm: growth of a batch after a rejection, 1 <= beta
     double significance = 0.05;             // of every test, 0 < x < 1
     std::uint32_t rings = 2;                // n_a
     std::uint32_t sectors = 6;              // n_s
+    bool aovs = false;                      // also depth, albedo, normal and the state of every pixel
 };
 
 }  // namespace vkcppm

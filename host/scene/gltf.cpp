@@ -173,7 +173,9 @@ public:
         warn_of_ignored_parts();
         check_buffer_views();
         for (std::size_t i = 0; i < model_.materials.size(); ++i) scene_.materials.push_back(read_material(i));
-        visit_nodes(root_nodes(parents()));
+        const std::vector<PlacedNode> nodes = place_nodes(root_nodes(parents()));
+        check_totals(nodes);
+        for (const PlacedNode& node : nodes) add_node(node);
         if (degenerate_triangles_ > 0) {
             warnings_.add(fmt::format("{} dropped", degenerate_triangles_), "triangles of zero area");
         }
@@ -336,10 +338,16 @@ private:
         return roots;
     }
 
-    void visit_nodes(const std::vector<int>& roots) {
-        // A node and its parent's transform. No recursion: the depth of the tree is free.
-        std::vector<std::pair<int, glm::dmat4>> stack;
-        for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack.emplace_back(*root, glm::dmat4(1.0));
+    struct PlacedNode {
+        int index;
+        glm::dmat4 to_world;
+    };
+
+    /// The roots and all below them, depth first, in the order of the file.
+    std::vector<PlacedNode> place_nodes(const std::vector<int>& roots) {
+        std::vector<PlacedNode> placed;
+        std::vector<PlacedNode> stack;  // with the parent's transform; no recursion: the depth of the tree is free
+        for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack.push_back({*root, glm::dmat4(1.0)});
         while (!stack.empty()) {
             const auto [index, parent_to_world] = stack.back();
             stack.pop_back();
@@ -351,14 +359,20 @@ private:
                          to_text(to_world[column]), "it must be finite");
                 }
             }
-            if (node.mesh >= 0) add_mesh(index, to_world);
-            if (node.camera >= 0) add_camera(index, to_world);
-            if (const auto* extension = find_extension(node.extensions, "KHR_lights_punctual")) {
-                add_light(index, extension->Get("light").GetNumberAsInt(), to_world);
-            }
+            placed.push_back({index, to_world});
             for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
-                stack.emplace_back(*child, to_world);
+                stack.push_back({*child, to_world});
             }
+        }
+        return placed;
+    }
+
+    void add_node(const PlacedNode& placed) {
+        const tinygltf::Node& node = model_.nodes[placed.index];
+        if (node.mesh >= 0) add_mesh(placed.index, placed.to_world);
+        if (node.camera >= 0) add_camera(placed.index, placed.to_world);
+        if (const auto* extension = find_extension(node.extensions, "KHR_lights_punctual")) {
+            add_light(placed.index, extension->Get("light").GetNumberAsInt(), placed.to_world);
         }
     }
 
@@ -574,6 +588,33 @@ private:
 
     // ---- meshes ----
 
+    /// How many corners a primitive has, or 0 where it makes no triangles.
+    std::size_t corner_count(const tinygltf::Primitive& source) const {
+        const auto positions = source.attributes.find("POSITION");
+        if (source.mode < TINYGLTF_MODE_TRIANGLES || positions == source.attributes.end()) return 0;
+        return model_.accessors[source.indices >= 0 ? source.indices : positions->second].count;
+    }
+
+    /// Limits what the meshes of all nodes add up to, before any is read: a small file can name one mesh very often.
+    void check_totals(const std::vector<PlacedNode>& nodes) const {
+        std::vector<std::size_t> triangles(model_.meshes.size());
+        for (std::size_t i = 0; i < triangles.size(); ++i) {
+            for (const tinygltf::Primitive& source : model_.meshes[i].primitives) {
+                const std::size_t corners = corner_count(source);
+                const bool is_list = source.mode == TINYGLTF_MODE_TRIANGLES;
+                triangles[i] += is_list ? corners / 3 : std::max<std::size_t>(corners, 2) - 2;
+                check_total(triangles[i], max_triangles, fmt::format("triangles of meshes[{}]", i));
+            }
+        }
+        std::size_t all_triangles = 0, all_primitives = 0;
+        for (const PlacedNode& node : nodes) {
+            const int mesh = model_.nodes[node.index].mesh;
+            if (mesh < 0) continue;
+            check_total(all_triangles += triangles[mesh], max_triangles, "triangles");
+            check_total(all_primitives += model_.meshes[mesh].primitives.size(), max_primitives, "primitives");
+        }
+    }
+
     /// The triangles of one primitive in its own space, indices checked. `positions` is its POSITION accessor.
     LocalPrimitive read_primitive(const tinygltf::Primitive& source, int positions, const std::string& object) {
         LocalPrimitive primitive;
@@ -640,7 +681,6 @@ private:
         const tinygltf::Primitive& source = model_.meshes[mesh].primitives[index];
         const std::string object = fmt::format("meshes[{}].primitives[{}]", mesh, index);
         const auto positions = source.attributes.find("POSITION");
-        check_total(++primitive_instances_, max_primitives, "primitives");
         if (source.mode < TINYGLTF_MODE_TRIANGLES) {
             warnings_.add("points and lines are skipped", object);
             return;
@@ -652,14 +692,10 @@ private:
         if (!source.targets.empty()) warnings_.add("its morph targets are ignored", object);
         if (source.attributes.contains("COLOR_0")) warnings_.add("its vertex colours are ignored", object);
 
-        const std::size_t corners = model_.accessors[source.indices >= 0 ? source.indices : positions->second].count;
-        const bool is_list = source.mode == TINYGLTF_MODE_TRIANGLES;
-        if (is_list ? corners % 3 != 0 : corners < 3) {
+        const std::size_t corners = corner_count(source);
+        if (source.mode == TINYGLTF_MODE_TRIANGLES ? corners % 3 != 0 : corners < 3) {
             warnings_.add("the corners that make no triangle are ignored", object);
         }
-        check_total(corners, 3 * max_triangles, "corners of " + object);
-        claimed_triangles_ += is_list ? corners / 3 : std::max<std::size_t>(corners, 2) - 2;
-        check_total(claimed_triangles_, max_triangles, "triangles");
 
         auto& local = primitives_[{mesh, index}];
         if (!local) local = read_primitive(source, positions->second, object);
@@ -785,8 +821,6 @@ private:
     std::map<std::pair<int, std::size_t>, std::optional<LocalPrimitive>> primitives_;  // by mesh and primitive
     std::set<int> finite_;                                                       // accessors known to be finite
     std::size_t read_vectors_ = 0;
-    std::size_t primitive_instances_ = 0;
-    std::size_t claimed_triangles_ = 0;
     std::size_t degenerate_triangles_ = 0;
 };
 

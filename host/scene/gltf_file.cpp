@@ -111,16 +111,28 @@ Container split(std::span<const std::uint8_t> bytes, const std::string& file) {
     return is_glb ? split_glb(bytes, file) : Container{bytes, std::nullopt};
 }
 
-json parse_json(std::span<const std::uint8_t> text, const std::string& file) {
-    const auto limit_depth = [&](int depth, json::parse_event_t, json&) {
-        if (depth > max_json_depth) {
+/// Limits how deep the brackets nest, before the parse: nlohmann's parser callback could do it, but in quadratic time.
+void check_depth(std::span<const std::uint8_t> text, const std::string& file) {
+    int depth = 0;
+    bool in_string = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '"') in_string = !in_string;
+        if (in_string) {
+            i += text[i] == '\\';  // the escaped character
+        } else if (text[i] == '[' || text[i] == '{') {
+            if (++depth <= max_json_depth) continue;
             bad_scene(file, "the depth of the JSON", fmt::to_string(depth),
                       fmt::format("the limit is {}", max_json_depth));
+        } else if (text[i] == ']' || text[i] == '}') {
+            --depth;
         }
-        return true;
-    };
+    }
+}
+
+json parse_json(std::span<const std::uint8_t> text, const std::string& file) {
+    check_depth(text, file);
     try {
-        return json::parse(text.begin(), text.end(), limit_depth);
+        return json::parse(text.begin(), text.end());
     } catch (const json::exception& error) {
         std::string reason = error.what();
         for (char& c : reason) {

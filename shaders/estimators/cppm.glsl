@@ -1,38 +1,24 @@
 // CPPM: Lin et al. 2020, Algorithm 1. The radius stays while the photons in the disc pass a chi-squared test for a
 // uniform density; it shrinks where they fail.
 
-void cppm_record(uint pixel, vec2 v, float q) { ++tally[tally_index(sector_bin(v, q), pixel)]; }
+void cppm_record(uint pixel, Accepted photon) { ++tally[row_of(cell_bin(photon.v, photon.q), pixel)]; }
 
-// Chi-squared test of uniformity over the disc of the first `rings` rings: sum((c O - S)^2) / (c S) < quantile. An
-// empty disc passes.
-bool cppm_pass(uint pixel, uint rings) {
-    uint cells = rings * SECTORS;
+uint tally_sum(uint pixel, uint cells) {
     uint sum = 0u;
-    for (uint bin = 0u; bin < cells; ++bin) sum += tally[tally_index(bin, pixel)];
-    if (sum == 0u) return true;
-    float statistic = 0.0;
-    for (uint bin = 0u; bin < cells; ++bin) {
-        float difference = scaled_difference(cells, tally[tally_index(bin, pixel)], sum);
-        statistic += difference * (difference / (float(cells) * float(sum)));
-    }
-    return statistic < params.threshold[rings - 1u];
+    for (uint bin = 0u; bin < cells; ++bin) sum += tally[row_of(bin, pixel)];
+    return sum;
 }
 
-// After a rejection: the largest inner disc that passes becomes the disc (areas of rings are equal), or the area
-// shrinks by k where none does. The tally starts again and the batch grows by beta.
-void cppm_update(uint pixel, uint found, inout PixelState state) {
-    state.total += found;
-    if (float(state.total) < state.batch || cppm_pass(pixel, RINGS)) return;
-    float factor = params.k;
-    for (uint rings = RINGS - 1u; rings > 0u; --rings) {
-        if (cppm_pass(pixel, rings)) {
-            factor = float(rings) / float(RINGS);
-            break;
-        }
+// Chi-squared statistic of uniformity over the disc of the first `rings` rings, sum((c O - S)^2) / (c S), over its
+// threshold. An empty disc passes.
+float uniform_ratio(uint pixel, uint rings) {
+    uint cells = rings * RING_CELLS;
+    uint sum = tally_sum(pixel, cells);
+    if (sum == 0u) return 0.0;
+    float statistic = 0.0;
+    for (uint bin = 0u; bin < cells; ++bin) {
+        float difference = scaled_difference(cells, tally[row_of(bin, pixel)], sum);
+        statistic += difference * (difference / (float(cells) * float(sum)));
     }
-    state.radius2 *= factor;
-    state.total = 0u;
-    state.batch *= params.beta;
-    ++state.rejections;
-    clear_tally(pixel);
+    return statistic / params.threshold[rings - 1u];
 }

@@ -1,19 +1,57 @@
-// The family's one switch. Every estimator has two hooks:
-//   record(pixel, v, q): a photon was accepted at v in the unit disc, q = |offset|^2 / R^2 < 1;
-//   update(pixel, diffuse, found, state): after an iteration in which `found` photons were accepted (`diffuse`: the
-//   pixel saw a surface to gather on); decides state.radius2 for the next one.
+// The family's one switch. An estimator has these hooks:
+//   record(pixel, photon, inside): a photon was accepted; `inside`: within R, else within search_radius2 only;
+//   update(pixel, diffuse, found, state): after an iteration in which `found` photons were accepted within R
+//   (`diffuse`: the pixel saw a surface to gather on); decides state.radius2 for the next one;
+//   clear_statistics(pixel): forgets what was recorded, when a radius begins;
+// and appm alone: kernel_weight (pi R^2 times its kernel) and search_radius2.
 // All share the accumulator acc += Phi / (pi R^2) of the update kernel; only the rule of the radius differs.
+
+struct Accepted {
+    vec2 v;        // offset in the unit disc
+    float q;       // |offset|^2 / R^2
+    vec3 power;    // W (frame-scaled), with the correction for shading normals
+    uint index;    // into the sorted photons
+};
+
 #include "estimators/sectors.glsl"
 #include "estimators/sppm.glsl"
 #include "estimators/sppm_kz.glsl"
 #include "estimators/cppm.glsl"
+#include "estimators/cppm_lf.glsl"
+#include "estimators/cppm_gof.glsl"
+#include "estimators/cppm_fold.glsl"
+#include "estimators/cppm_null.glsl"
+#include "estimators/appm.glsl"
+#include "estimators/ftest.glsl"
+#include "estimators/algorithm1.glsl"
 
-void record(uint pixel, vec2 v, float q) {
-    if (ESTIMATOR == ESTIMATOR_CPPM) cppm_record(pixel, v, q);
+void record(uint pixel, Accepted photon, bool inside) {
+    switch (ESTIMATOR) {
+        case ESTIMATOR_CPPM:
+        case ESTIMATOR_CPPM_LF: cppm_record(pixel, photon); break;
+        case ESTIMATOR_CPPM_GOF: cppm_gof_record(pixel, photon); break;
+        case ESTIMATOR_CPPM_FOLD: cppm_fold_record(pixel, photon); break;
+        case ESTIMATOR_APPM: appm_record(pixel, photon, inside); break;
+        case ESTIMATOR_FTEST:
+        case ESTIMATOR_FTEST_FOLD: ftest_record(pixel, photon); break;
+        default: break;
+    }
 }
 
 void update(uint pixel, bool diffuse, uint found, inout PixelState state) {
-    if (ESTIMATOR == ESTIMATOR_SPPM) sppm_update(found, state);
-    else if (ESTIMATOR == ESTIMATOR_SPPM_KZ) sppm_kz_update(state);
-    else cppm_update(pixel, found, state);
+    switch (ESTIMATOR) {
+        case ESTIMATOR_SPPM: sppm_update(found, state); break;
+        case ESTIMATOR_SPPM_KZ: sppm_kz_update(state); break;
+        case ESTIMATOR_CPPM_NULL: cppm_null_update(found, state); break;
+        case ESTIMATOR_APPM: appm_update(pixel, diffuse, found, state); break;
+        case ESTIMATOR_FTEST:
+        case ESTIMATOR_FTEST_FOLD: ftest_sample(pixel, diffuse, state); algorithm1_update(pixel, found, state); break;
+        default: algorithm1_update(pixel, found, state); break;
+    }
+}
+
+float kernel_weight(float q) { return ESTIMATOR == ESTIMATOR_APPM ? appm_kernel_weight(q) : 1.0; }
+
+float search_radius2(uint pixel, float radius2) {
+    return ESTIMATOR == ESTIMATOR_APPM ? appm_search_radius2(pixel, radius2) : radius2;
 }

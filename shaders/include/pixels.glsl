@@ -1,12 +1,10 @@
-// What a pixel remembers between iterations: its radius and, for estimators with sectors, its tally.
+// What a pixel remembers between iterations: its radius and the statistics of its estimator.
 layout(binding = BIND_PIXELS, scalar) buffer PixelBlock { PixelState pixels[]; };
-layout(binding = BIND_TALLY, scalar) buffer TallyBlock { uint tally[]; };  // [bin x P]
+layout(binding = BIND_TALLY, scalar) buffer TallyBlock { uint tally[]; };        // [bin x P] photons
+layout(binding = BIND_MOMENTS, scalar) buffer MomentBlock { float moments[]; };  // [row x P]
 
 // A radius is never smaller than the rounding error of a position in the scene frame.
 const float RADIUS2_MIN = 1e-12;
 
-uint tally_index(uint bin, uint pixel) { return bin * pixel_count() + pixel; }
-
-void clear_tally(uint pixel) {
-    for (uint bin = 0u; bin < RINGS * SECTORS; ++bin) tally[tally_index(bin, pixel)] = 0u;
-}
+// Row `row` of a pixel, of the tally or of the moments: neighbours in a row stand together in memory.
+uint row_of(uint row, uint pixel) { return row * pixel_count() + pixel; }

@@ -13,6 +13,8 @@
 #include "include/bounds.glsl"
 #include "include/hits.glsl"
 
+layout(binding = BIND_AOVS, scalar) buffer AovBlock { Aovs aovs[]; };
+
 void main() {
     uint pixel = invocation();
     if (pixel >= pixel_count() || blocked(PASS_EYE)) return;
@@ -32,7 +34,7 @@ void main() {
         origin = enter_bounds(params.eye, direction);
         distance = length(origin - params.eye);
     } else {
-        if (hit_position[pixel].state != HIT_UNFINISHED) return;
+        if ((hit_position[pixel].state & HIT_MASK) != HIT_UNFINISHED) return;
         origin = hit_position[pixel].position;
         throughput = hit_weight[pixel].weight;
         depth = hit_weight[pixel].normal;
@@ -62,12 +64,19 @@ void main() {
         distance += hit.t;
         Surface surface = surface_at(hit, direction);
         SurfaceMaterial material = materials[surface.material];
+        if ((FEATURES & FEATURE_AOVS) != 0u && depth == 0u) {
+            Aovs sum = aovs[pixel];
+            aovs[pixel] = Aovs(sum.albedo + material.color, sum.normal + surface.normal,
+                               sum.depth + distance * dot(direction, params.forward), sum.hits + 1u);
+        }
         if (surface.front || material.double_sided != 0u) emission += throughput * material.emission;
         if (material.kind == SURFACE_DIFFUSE) {
             weight.weight = throughput * material.color * (1.0 / PI);
             weight.normal = pack_direction(surface.normal);
             position.position = surface.position;
+            uvec3 albedo = uvec3(clamp(material.color, 0.0, 1.0) * 1023.0 + 0.5);
             position.state = any(greaterThan(weight.weight, vec3(0.0))) ? HIT_DIFFUSE : HIT_NONE;
+            position.state |= (albedo.x | albedo.y << 10u | albedo.z << 20u) << 2u;
             break;
         }
         if ((FEATURES & (FEATURE_MIRROR | FEATURE_DIELECTRIC)) == 0u) break;
@@ -79,6 +88,6 @@ void main() {
     hit_position[pixel] = position;
     hit_weight[pixel] = weight;
     hit_emission[pixel] = HitEmission(
-        emission, position.state == HIT_UNFINISHED ? distance : distance * params.pixel_radius);
+        emission, (position.state & HIT_MASK) == HIT_UNFINISHED ? distance : distance * params.pixel_radius);
     if (rays > 1u) atomicAdd(status.rays, rays - 1u);  // the host knows of the first of every pixel
 }

@@ -2,9 +2,11 @@
 // One invocation a pixel: sums the photons in its disc with the radius in force before this iteration's photons were
 // looked at, and bins them for the estimator. Reads hits, pixels, grid, sorted photons; writes gathered, tally,
 // cursors. O(photons in the cells that the disc touches). Fails by running out of steps: goes on next round.
-// Acceptance: |y - x| < R strictly, and the photon's geometric normal agrees with the pixel's shading normal, both on
-// the side they were seen from; the distance is that in space, the kernel 1 / (pi R^2).
+// Acceptance: |y - x| < R strictly (appm looks further for its derivative), and the photon's geometric normal agrees with the pixel's shading normal, both on
+// the side they were seen from; the distance is that in space, the kernel is 1 / (pi R^2), but for appm's.
 #include "include/kernel.glsl"
+#include "include/rng.glsl"
+#include "include/sampling.glsl"
 #include "include/frame.glsl"
 #include "include/grid.glsl"
 #include "include/search.glsl"
@@ -19,7 +21,7 @@ void main() {
     if (pixel >= pixel_count() || blocked(PASS_GATHER)) return;
     Cursor cursor = Cursor(uvec3(CURSOR_START), 0u);
     Gathered sum = Gathered(vec3(0.0), 0u);
-    if (hit_position[pixel].state != HIT_DIFFUSE) {
+    if (!sees_diffuse(pixel)) {
         gathered[pixel] = sum;
         return;
     }
@@ -39,13 +41,14 @@ void main() {
     bitangent *= inverse_radius;
 
     int steps = int(params.step_budget);
-    CellBox box = cell_box(position, sqrt(radius2));
+    float reach2 = search_radius2(pixel, radius2);
+    CellBox box = cell_box(position, sqrt(reach2));
     Walk walk;
     FOR_PHOTONS(box, cursor, walk, steps, {
         vec4 photon = texelFetch(sorted, int(walk.first));
         vec3 offset = photon.xyz - position;
         float squared = dot(offset, offset);
-        if (squared < radius2 && same_side(floatBitsToUint(photon.w), normal) && in_segment(walk, photon.xyz)) {
+        if (squared < reach2 && same_side(floatBitsToUint(photon.w), normal) && in_segment(walk, photon.xyz)) {
             vec4 flux = texelFetch(sorted_flux, int(walk.first));
             vec3 power = flux.xyz;
             if ((FEATURES & FEATURE_SMOOTH_DIFFUSE) != 0u) {
@@ -54,9 +57,11 @@ void main() {
                 vec3 geometric = unpack_direction(floatBitsToUint(photon.w));
                 power *= max(0.0, dot(towards, normal)) / max(0.01, dot(towards, geometric));
             }
-            sum.flux += power;
-            ++sum.count;
-            record(pixel, vec2(dot(offset, tangent), dot(offset, bitangent)), squared * inverse_radius * inverse_radius);
+            bool inside = squared < radius2;
+            float q = squared * inverse_radius * inverse_radius;
+            sum.flux += inside ? power * kernel_weight(q) : vec3(0.0);
+            sum.count += inside ? 1u : 0u;
+            record(pixel, Accepted(vec2(dot(offset, tangent), dot(offset, bitangent)), q, power, walk.first), inside);
         }
     })
     gathered[pixel] = sum;

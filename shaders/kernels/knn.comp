@@ -7,11 +7,14 @@
 // (flux.x: largest kept squared distance, flux.y: its index, flux.z: search radius, count: kept).
 // O(photons in the cells met + k per replacement). Fails by running out of steps: goes on next round.
 #include "include/kernel.glsl"
+#include "include/rng.glsl"
+#include "include/sampling.glsl"
 #include "include/frame.glsl"
 #include "include/grid.glsl"
 #include "include/search.glsl"
 #include "include/hits.glsl"
 #include "include/pixels.glsl"
+#include "estimators/estimator.glsl"
 
 layout(binding = BIND_NEAREST, scalar) buffer NearestBlock { float nearest[]; };  // [knn x P]
 
@@ -33,7 +36,7 @@ int keep(inout Gathered kept, float squared, uint pixel) {
 void main() {
     uint pixel = invocation();
     if (pixel >= pixel_count() || blocked(PASS_KNN)) return;
-    if (hit_position[pixel].state != HIT_DIFFUSE || pixels[pixel].seeded != 0u) return;
+    if (!sees_diffuse(pixel) || pixels[pixel].seeded != 0u) return;
 
     // The largest radius: bounded by the pixel's footprint, but not below a disc of k photons at mean density.
     float cap = sqrt(pixels[pixel].radius2);
@@ -81,10 +84,14 @@ void main() {
         return;
     }
     if (kept.count == params.knn) {
-        pixels[pixel].radius2 = max(kept.flux.x, RADIUS2_MIN);
-        pixels[pixel].seeded = 1u;
-        pixels[pixel].total = 0u;
-        clear_tally(pixel);
+        // What was counted with the largest radius says nothing about this one.
+        PixelState state = pixels[pixel];
+        state.radius2 = max(kept.flux.x, RADIUS2_MIN);
+        state.seeded = 1u;
+        state.total = 0u;
+        state.count = 0.0;
+        clear_statistics(pixel);
+        pixels[pixel] = state;
     }
     cursors[pixel].cell.x = CURSOR_DONE;
 }

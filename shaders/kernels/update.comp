@@ -4,6 +4,7 @@
 // the histogram of radii from which the next grid is planned. O(rings x sectors).
 // A contribution that is not finite is dropped and counted in status.invalid.
 #include "include/kernel.glsl"
+#include "include/rng.glsl"
 #include "include/sampling.glsl"
 #include "include/hits.glsl"
 #include "include/pixels.glsl"
@@ -27,7 +28,7 @@ void main() {
     if (pixel >= pixel_count() || blocked(0u)) return;
     PixelState state = pixels[pixel];
     vec3 estimate = hit_emission[pixel].emission;
-    bool diffuse = hit_position[pixel].state == HIT_DIFFUSE;
+    bool diffuse = sees_diffuse(pixel);
     Gathered sum = gathered[pixel];
     if (diffuse) {
         // L = W rho / pi * sum(power) / (pi R^2 J), the radius being that before this update.
@@ -43,6 +44,10 @@ void main() {
         atomicAdd(status.invalid, 1u);
     }
     if (state.radius2 > 0.0) {
+        if (diffuse) {
+            ++state.seen;
+            state.photons += sum.count;
+        }
         update(pixel, diffuse, diffuse ? sum.count : 0u, state);
         state.radius2 = max(state.radius2, RADIUS2_MIN);
         pixels[pixel] = state;

@@ -33,6 +33,9 @@
 #define BIND_CURSOR 25
 #define BIND_NEAREST 26        // [knn x P] squared distances, while pixels are seeded
 #define BIND_IMAGE 27
-#define BIND_COUNT 28
+#define BIND_MOMENTS 28        // [moments x P] float sums of estimators that weigh photons
+#define BIND_QUANTILES 29      // [rings x F_QUANTILES] thresholds of the F-tests
+#define BIND_AOVS 30           // [P] Aovs, where they are asked for
+#define BIND_COUNT 31
 #define BIND_FIRST_TEXEL 1
 #define BIND_FIRST_STORAGE 6

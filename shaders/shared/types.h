@@ -33,6 +33,7 @@ using uint = std::uint32_t;
 #define FEATURE_MIRROR 1u
 #define FEATURE_DIELECTRIC 2u
 #define FEATURE_SMOOTH_DIFFUSE 4u  // a diffuse triangle whose shading normals are not its geometric normal
+#define FEATURE_AOVS 8u            // depth, albedo and normal are asked for
 
 #define MAX_RINGS 4
 #define MAX_SECTORS 12
@@ -118,7 +119,7 @@ struct PhotonFlux {
 // Where an eye path ended. 3 records of 16 bytes, one array each.
 struct HitPosition {
     vec3 position;     // scene frame; while the path is unfinished: origin of the next ray
-    uint state;        // HIT_*
+    uint state;        // HIT_* | diffuse albedo, 10 bits a channel, << 2: what the F-tests weigh photons by
 };
 struct HitWeight {
     vec3 weight;       // path throughput * albedo / pi; unfinished: path throughput
@@ -131,6 +132,7 @@ struct HitEmission {
 #define HIT_NONE 0u        // nothing to gather: the path left the scene or was absorbed
 #define HIT_DIFFUSE 1u
 #define HIT_UNFINISHED 2u  // the step budget ran out: the next round goes on
+#define HIT_MASK 3u
 
 // Sum of one pass of the gather over a pixel's disc.
 struct Gathered {
@@ -142,10 +144,22 @@ struct Gathered {
 struct PixelState {
     float radius2;     // R^2 in force, 0 before the pixel first saw a diffuse surface
     uint seeded;       // 1 once the k-th nearest photon gave the radius; 0: radius2 is the cap
-    float count;       // sppm: N of Hachisuka and Jensen; sppm-kz: iterations since the radius was seeded
+    float count;       // sppm: N of Hachisuka and Jensen; sppm-kz, appm: iterations since the radius was seeded;
+                       // ftest: iterations since the last rejection
     uint total;        // photons accepted since the last reset of the tally
     float batch;       // B, photons to see before a test
     uint rejections;
+    uint photons;      // accepted in all
+    uint seen;         // iterations in which the pixel saw a diffuse surface
+    float statistic;   // of the last test of the whole disc, over its threshold
+};
+
+// What a picture's first surfaces are like: sums over the iterations in which the pixel met one.
+struct Aovs {
+    vec3 albedo;       // base colour
+    vec3 normal;       // shading, world axes
+    float depth;       // along the camera's axis, scene frame
+    uint hits;
 };
 
 // Compensated sum of radiance (Neumaier): sum + low is the estimate times the iterations.
@@ -232,8 +246,9 @@ struct Params {
     float beta;
     uint cells;            // capacity of the cell table, a power of two
     uint sort_lanes;       // columns of the radix histogram
-    float threshold[MAX_RINGS];          // chi-squared quantile for the disc of the first m + 1 rings
+    float threshold[MAX_RINGS];          // chi-squared quantile for the disc of the first i + 1 rings
     vec2 sector_edge[MAX_SECTORS / 2];   // unit vectors at 2 pi s / n_s, s < n_s / 2
+    vec2 sector_centre[MAX_SECTORS];     // unit vectors at pi (2 s + 1) / n_s
 };
 
 // Per launch.

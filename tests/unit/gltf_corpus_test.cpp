@@ -1,6 +1,7 @@
 // The loader over collections of files beside the project: sample models must load, hostile files must not crash it.
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <string>

@@ -159,7 +159,7 @@ const std::vector<Fault> faults = {
     {"AccessorCountOverflow", [](auto& b) { b.document["accessors"][0]["count"] = 1537228672809129302u; },
      {"accessors[0].count is 1537228672809129302"}},
     {"AccessorHuge", [](auto& b) { b.document["accessors"][0]["count"] = 4503599627370496u; },
-     {"4503599627370496"}},
+     {"triangles of meshes[0] is 1501199875790165", "134217728"}},
     {"AccessorNoCount", [](auto& b) { b.document["accessors"][0].erase("count"); }, {"accessors[0].count is missing"}},
     {"AccessorNegativeCount", [](auto& b) { b.document["accessors"][0]["count"] = -3; }, {"accessors[0].count is -3"}},
     {"AccessorComponent", [](auto& b) { b.document["accessors"][0]["componentType"] = 5124; },
@@ -204,14 +204,19 @@ const std::vector<Fault> faults = {
     {"InfinitePosition",
      [](auto& b) { primitive(b)["attributes"]["POSITION"] = b.float3({{0, 0, 0}, {1, 0, 0}, {0, 1, infinity}}); },
      {"accessors[1] element 2", "inf", "finite"}},
+    {"TooManyPrimitives",
+     [](auto& b) {
+         b.document["meshes"][0]["primitives"] = std::vector<json>(5000, {{"attributes", json::object()}});
+         b.document["nodes"] = std::vector<json>(5000, {{"mesh", 0}});
+     },
+     {"number of primitives is", "16777216"}},
     {"TooManyTriangles",
      [](auto& b) {
          b.document["accessors"][0].erase("bufferView");
          b.document["accessors"][0]["count"] = 3000000;
-         b.document["nodes"] = json::array();
-         for (int i = 0; i < 150; ++i) b.add("nodes", {{"mesh", 0}});
+         b.document["nodes"] = std::vector<json>(150, {{"mesh", 0}});
      },
-     {"number of triangles is", "134217728"}},
+     {"number of triangles is 135000000", "134217728"}},
 
     // Cameras, lights, materials.
     {"Yfov", [](auto& b) { add_camera(b, {{"yfov", 4}, {"znear", 1}}); }, {"cameras[0].perspective.yfov is 4", "pi"}},
@@ -276,6 +281,8 @@ TEST(HostileFile, WhatIsNotGltf) {
 TEST(HostileFile, DeepJson) {
     const std::string brackets(1000000, '[');
     expect_bad_scene(R"({"asset": {"version": "2.0"}, "extras": )" + brackets, {"depth of the JSON is 65", "64"});
+    const std::string quoted_brackets = R"({"asset": {"version": "2.0"}, "scene": 0, "extras": "\"[)" + brackets + "\"}";
+    expect_bad_scene(quoted_brackets, {"scene is 0"});
 }
 
 TEST(HostileFile, EveryTruncationOfAGltf) {

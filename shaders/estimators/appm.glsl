@@ -1,0 +1,73 @@
+// APPM: Kaplanyan and Dachsbacher 2013, in a form whose units agree. The radius balances variance and squared bias:
+// r = [2 R V / (N kappa^2 Delta^2)]^(1/6), V the second moment of the contribution's luminance per area and path, Delta
+// the Laplacian of the radiance's luminance, N paths so far. Both are means over iterations; Delta by the five-point
+// stencil of the kernel with the pilot bandwidth r_d. Uses K(t) = 7/(2 pi) (1 - 10 t^3 + 15 t^4 - 6 t^5).
+
+const float APPM_KAPPA = 5.0 / 48.0;              // int x_1^2 K
+const float APPM_ROUGHNESS = 287.0 / (132.0 * PI);  // int K^2
+const float APPM_PILOT = 0.5;                     // r_d = APPM_PILOT r_1 n^(-1/8)
+const float APPM_LOW = 0.1;                       // r stays within [LOW, HIGH] r_1 n^(-1/6)
+const float APPM_HIGH = 2.0;
+const uint APPM_PHOTONS = 10u;                    // r = r_1 until as many were seen
+
+// pi K(t), q = t^2.
+float appm_kernel_weight(float q) {
+    if (q >= 1.0) return 0.0;
+    float t = sqrt(q);
+    return 3.5 * (1.0 + q * t * (-10.0 + t * (15.0 - 6.0 * t)));
+}
+
+float appm_first_radius2(uint pixel) {
+    return pixels[pixel].count > 0.0 ? moments[row_of(APPM_FIRST_RADIUS2, pixel)] : pixels[pixel].radius2;
+}
+
+// r_d^2 in the iteration at hand, n = count + 1.
+float appm_pilot2(uint pixel) {
+    return APPM_PILOT * APPM_PILOT * appm_first_radius2(pixel) * pow(pixels[pixel].count + 1.0, -0.25);
+}
+
+// The stencil reaches a step and a bandwidth far.
+float appm_search_radius2(uint pixel, float radius2) { return max(radius2, 4.0 * appm_pilot2(pixel)); }
+
+void appm_record(uint pixel, Accepted photon, bool inside) {
+    float radius2 = pixels[pixel].radius2;
+    float y = luminance(hit_weight[pixel].weight * photon.power) * params.inverse_paths;
+    if (inside) {
+        moments[row_of(APPM_SECOND_MOMENT_NOW, pixel)] +=
+            y * y * (float(params.photons) * appm_kernel_weight(photon.q) / (PI * radius2));
+    }
+    // Offset in units of r_d; sum over the four neighbours at distance 1, less four times the centre.
+    float pilot2 = appm_pilot2(pixel);
+    vec2 e = photon.v * sqrt(radius2 / pilot2);
+    float stencil = -4.0 * appm_kernel_weight(dot(e, e));
+    stencil += appm_kernel_weight(dot(e, e) + 2.0 * e.x + 1.0) + appm_kernel_weight(dot(e, e) - 2.0 * e.x + 1.0);
+    stencil += appm_kernel_weight(dot(e, e) + 2.0 * e.y + 1.0) + appm_kernel_weight(dot(e, e) - 2.0 * e.y + 1.0);
+    moments[row_of(APPM_LAPLACIAN_NOW, pixel)] += y * stencil / (PI * pilot2 * pilot2);
+}
+
+void appm_update(uint pixel, bool diffuse, uint found, inout PixelState state) {
+    state.total += found;
+    if (!diffuse) return;
+    if (state.count == 0.0) moments[row_of(APPM_FIRST_RADIUS2, pixel)] = state.radius2;
+    state.count += 1.0;
+    for (uint row = 0u; row < 2u; ++row) {
+        float mean = moments[row_of(APPM_SECOND_MOMENT + row, pixel)];
+        mean += (moments[row_of(row, pixel)] - mean) / state.count;
+        moments[row_of(APPM_SECOND_MOMENT + row, pixel)] = mean;
+        moments[row_of(row, pixel)] = 0.0;
+    }
+    float first = sqrt(moments[row_of(APPM_FIRST_RADIUS2, pixel)]);
+    if (state.total < APPM_PHOTONS) return;
+    float v = moments[row_of(APPM_SECOND_MOMENT, pixel)];
+    float laplacian = moments[row_of(APPM_LAPLACIAN, pixel)];
+    float paths = state.count * float(params.photons);
+    // The root first: the quotient itself can leave the range of floats.
+    float scale = pow(state.count, -1.0 / 6.0);
+    float radius = APPM_HIGH * first * scale;
+    if (laplacian != 0.0) {
+        float root = pow(2.0 * APPM_ROUGHNESS * v / (paths * APPM_KAPPA * APPM_KAPPA), 1.0 / 6.0) *
+                     pow(abs(laplacian), -1.0 / 3.0);
+        radius = clamp(root, APPM_LOW * first * scale, APPM_HIGH * first * scale);
+    }
+    state.radius2 = radius * radius;
+}

@@ -1,0 +1,43 @@
+// CPPM-LF: the null hypothesis is a linear density, supplementary section 5.2.2. Tallies are cppm's.
+
+// Chi-squared statistic against the best linear density f = k1 x + k2 y + c on the disc of the first `rings` rings (its
+// radius taken as 1), over its threshold; two degrees of freedom fewer. Least squares, Eq. (10); |k| at most c = 1/pi
+// keeps f positive, Eq. (12)-(15). Eq. (9) with the factor n_a^(-3/2): the printed n_a^(2/3) is a slip of the pen that
+// makes probabilities negative.
+float linear_ratio(uint pixel, uint rings) {
+    uint cells = rings * RING_CELLS;
+    uint sum = tally_sum(pixel, cells);
+    if (sum == 0u) return 0.0;
+    // dp/dk1 of ring a (from 1), sector s: A_a cos(theta_s), A_a = (2/3) (a^(3/2) - (a-1)^(3/2)) sin(pi/n_s) n_a^(-3/2).
+    float factor = 2.0 / 3.0 * sin(PI / float(SECTORS)) / (float(rings) * sqrt(float(rings)));
+    vec2 moment = vec2(0.0);
+    float norm = 0.0;
+    for (uint ring = 0u; ring < rings; ++ring) {
+        float inner = float(ring), outer = inner + 1.0;
+        float slope = factor * (outer * sqrt(outer) - inner * sqrt(inner));
+        for (uint s = 0u; s < SECTORS; ++s) {
+            moment += float(tally[row_of(ring * SECTORS + s, pixel)]) * slope * params.sector_centre[s];
+        }
+        norm += 0.5 * float(SECTORS) * slope * slope;
+    }
+    vec2 k = moment / (float(sum) * norm);
+    float limit = 1.0 / PI;
+    float size = length(k);
+    if (size > limit) k *= limit / size;
+
+    float statistic = 0.0;
+    float share = 1.0 / float(cells);
+    for (uint ring = 0u; ring < rings; ++ring) {
+        float inner = float(ring), outer = inner + 1.0;
+        float slope = factor * (outer * sqrt(outer) - inner * sqrt(inner));
+        for (uint s = 0u; s < SECTORS; ++s) {
+            float tilt = slope * dot(k, params.sector_centre[s]);
+            float p = max(share + tilt, 1e-6 * share);
+            // O - S p = (c O - S) / c - S (p - 1/c)
+            float difference = scaled_difference(cells, tally[row_of(ring * SECTORS + s, pixel)], sum) * share -
+                               float(sum) * (p - share);
+            statistic += difference * (difference / (float(sum) * p));
+        }
+    }
+    return statistic / params.threshold[rings - 1u];
+}

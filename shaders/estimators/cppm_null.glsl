@@ -1,0 +1,9 @@
+// The ablation of cppm: every full batch shrinks the area by k, without a test.
+void cppm_null_update(uint found, inout PixelState state) {
+    state.total += found;
+    if (float(state.total) < state.batch) return;
+    state.radius2 *= params.k;
+    state.total = 0u;
+    state.batch *= params.beta;
+    ++state.rejections;
+}

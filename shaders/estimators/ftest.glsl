@@ -1,0 +1,57 @@
+// F-tests: after Lin et al. 2025, arXiv:2504.04411: analysis of variance of contributions over sectors. One sample of a
+// cell is the sum, over one iteration, of the luminance of the contributions (with the BSDF, without the throughput of
+// the eye path) that fell there: it sees gradients of flux at constant density, and photons that come in clusters.
+// ftest-fold adds opposite sectors first. Choices where the abstract is silent: cells as cppm, batches as cppm.
+// Moments: rows [0, c) sums of this iteration | [c, 2c) means of the cells | [2c, 2c + rings) sums of squared
+// deviations within the cells of a ring (Welford's recurrence: nothing cancels).
+
+layout(binding = BIND_QUANTILES, scalar) readonly buffer QuantileBlock { float f_quantiles[]; };
+
+const uint F_CELLS = RINGS * RING_CELLS;
+
+void ftest_record(uint pixel, Accepted photon) {
+    moments[row_of(cell_bin(photon.v, photon.q), pixel)] += luminance(hit_albedo(pixel) * photon.power);
+}
+
+// Takes this iteration's sums as one more sample of every cell.
+void ftest_sample(uint pixel, bool diffuse, inout PixelState state) {
+    if (!diffuse) return;
+    state.count += 1.0;
+    for (uint bin = 0u; bin < F_CELLS; ++bin) {
+        float x = moments[row_of(bin, pixel)];
+        float mean = moments[row_of(F_CELLS + bin, pixel)];
+        float next = mean + (x - mean) / state.count;
+        moments[row_of(F_CELLS + bin, pixel)] = next;
+        moments[row_of(2u * F_CELLS + bin / RING_CELLS, pixel)] += (x - mean) * (x - next);
+        moments[row_of(bin, pixel)] = 0.0;
+    }
+}
+
+// Threshold for the disc of the first `rings` rings after m samples: linear between samples in 1 / (m - 1).
+float f_threshold(uint rings, float m) {
+    float x = min(2.0 / (m - 1.0), 1.0) * float(F_QUANTILES - 1);
+    uint i = min(uint(x), uint(F_QUANTILES - 2));
+    uint row = (rings - 1u) * F_QUANTILES + i;
+    return mix(f_quantiles[row], f_quantiles[row + 1u], x - float(i));
+}
+
+// F = [m sum(mean_i - mean)^2 / (n - 1)] / [within / (n (m - 1))] over n cells, over its threshold. Fewer than three
+// samples pass, and so do cells that are all equal.
+float f_ratio(uint pixel, uint rings, float m) {
+    if (m < 3.0) return 0.0;
+    uint cells = rings * RING_CELLS;
+    float mean = 0.0;
+    for (uint bin = 0u; bin < cells; ++bin) mean += moments[row_of(F_CELLS + bin, pixel)];
+    mean /= float(cells);
+    float between = 0.0;
+    for (uint bin = 0u; bin < cells; ++bin) {
+        float deviation = moments[row_of(F_CELLS + bin, pixel)] - mean;
+        between += deviation * deviation;
+    }
+    float within = 0.0;
+    for (uint ring = 0u; ring < rings; ++ring) within += moments[row_of(2u * F_CELLS + ring, pixel)];
+    if (between == 0.0) return 0.0;
+    if (within == 0.0) return 3.0e38;
+    float f = (m * between / float(cells - 1u)) / (within / (float(cells) * (m - 1.0)));
+    return f / f_threshold(rings, m);
+}

@@ -1,0 +1,65 @@
+// Every scene of scenes/ with an <name>.expect.json reaches the value that its formula gives.
+
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "render/render.h"
+#include "scene/gltf.h"
+#include "support/gpu.h"
+
+namespace vkcppm::test {
+namespace {
+
+const std::filesystem::path scenes = std::filesystem::path(VKCPPM_SOURCE_DIR) / "scenes";
+
+std::vector<std::string> expectations() {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(scenes)) {
+        const std::string name = entry.path().filename().string();
+        const auto suffix = name.find(".expect.json");
+        if (suffix != std::string::npos) names.push_back(name.substr(0, suffix));
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+class ClosedForm : public GpuTest, public testing::WithParamInterface<std::string> {};
+
+TEST_P(ClosedForm, MeanRadianceOfEveryRegion) {
+    std::ifstream file(scenes / (GetParam() + ".expect.json"));
+    const nlohmann::json expected = nlohmann::json::parse(file);
+    const Scene scene = load_gltf(scenes / expected["scene"].get<std::string>());
+    EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.front();
+    Settings settings;
+    settings.size = Extent{expected["size"][0], expected["size"][1]};
+    settings.iterations = expected["iterations"];
+    settings.photons = expected["photons"];
+    const Rendering rendering = render(scene, settings, device(), [](const Progress&) { return true; });
+    EXPECT_TRUE(rendering.warnings.empty()) << rendering.warnings.front();
+
+    const double tolerance = expected["tolerance"];
+    for (const auto& region : expected["regions"]) {
+        glm::dvec3 sum(0.0);
+        std::size_t count = 0;
+        for (std::uint32_t y = region["y"][0]; y < region["y"][1]; ++y) {
+            for (std::uint32_t x = region["x"][0]; x < region["x"][1]; ++x, ++count) {
+                sum += glm::dvec3(rendering.image.at(x, y));
+            }
+        }
+        for (int channel = 0; channel < 3; ++channel) {
+            const double want = region["rgb"][channel], got = sum[channel] / double(count);
+            EXPECT_NEAR(got, want, tolerance * want)
+                << region["name"] << " channel " << channel << ": ratio " << got / want << "; " << expected["formula"];
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, ClosedForm, testing::ValuesIn(expectations()),
+                         [](const auto& info) { return info.param; });
+
+}  // namespace
+}  // namespace vkcppm::test
