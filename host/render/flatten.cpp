@@ -83,7 +83,7 @@ void add_triangles(const Scene& scene, FlatScene& flat) {
         shading.material = triangle.material | (is_flat ? SHADING_FLAT : 0u);
         flat.shading.push_back(shading);
 
-        const std::uint32_t kind = flat.materials[triangle.material].kind;
+        const std::uint32_t kind = flat.materials[triangle.material].kind & ~SURFACE_DOUBLE_SIDED;
         if (kind == SURFACE_MIRROR) flat.features |= FEATURE_MIRROR;
         if (kind == SURFACE_DIELECTRIC) flat.features |= FEATURE_DIELECTRIC;
         if (kind == SURFACE_DIFFUSE && !is_flat) flat.features |= FEATURE_SMOOTH_DIFFUSE;
@@ -111,9 +111,9 @@ std::vector<gpu::Light> collect_lights(const Scene& scene, const FlatScene& flat
         light.position = triangle.v0;
         light.e1 = triangle.e1;
         light.e2 = triangle.e2;
-        light.double_sided = material.double_sided;
+        light.double_sided = (material.kind & SURFACE_DOUBLE_SIDED) != 0 ? 1 : 0;
         const double area = 0.5 * glm::length(glm::cross(glm::dvec3(triangle.e1), glm::dvec3(triangle.e2)));
-        light.power = glm::vec3(glm::dvec3(material.emission) * (pi * area * (material.double_sided ? 2.0 : 1.0)));
+        light.power = glm::vec3(glm::dvec3(material.emission) * (pi * area * (light.double_sided ? 2.0 : 1.0)));
         lights.push_back(light);
     }
     const double scale2 = flat.frame.scale * flat.frame.scale;

@@ -100,8 +100,8 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     upload(BIND_NODES, "bvh nodes", scene.bvh.nodes, Kind::uint_texels);
     upload(BIND_TRIANGLES, "triangles", scene.triangles, Kind::float_texels);
     upload(BIND_SHADING, "shading", scene.shading, Kind::uint_texels);
-    upload(BIND_MATERIALS, "materials", scene.materials, Kind::storage);
-    upload(BIND_LIGHTS, "lights", scene.lights, Kind::storage);
+    upload(BIND_MATERIALS, "materials", scene.materials, Kind::uint_texels);
+    upload(BIND_LIGHTS, "lights", scene.lights, Kind::uint_texels);
     allocate(BIND_PARAMS, "parameters", sizeof(gpu::Params), Kind::uniform);
     allocate(BIND_STATUS, "status", sizeof(gpu::Status), Kind::storage);
     allocate(BIND_GRID, "grid", sizeof(gpu::Grid), Kind::storage);
@@ -125,7 +125,8 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     allocate(BIND_PATHS, "paths", params_.photon_lanes * sizeof(gpu::PathState), Kind::storage);
     const std::uint64_t counters = std::uint64_t(params_.cells) + 1 + params_.photon_lanes + 1 +
                                    (std::uint64_t(params_.sort_lanes) << digit_bits_) + scan_blocks;
-    allocate(BIND_COUNTERS, "counters", counters * sizeof(std::uint32_t), Kind::storage);
+    allocate(BIND_COUNTERS, "counters", counters * sizeof(std::uint32_t), Kind::word_texels);
+    bindings_.bind(BIND_COUNTER_TEXELS, buffer(BIND_COUNTERS));
     allocate_photons();
 
     gpu::PixelState pixel{};
@@ -146,8 +147,8 @@ void Integrator::allocate_photons() {
     const std::uint64_t slots = std::uint64_t(params_.photon_lanes) * params_.photon_capacity;
     allocate(BIND_PHOTONS, "photons", slots * sizeof(gpu::Photon), Kind::storage);
     allocate(BIND_PHOTON_FLUX, "photon flux", slots * sizeof(gpu::PhotonFlux), Kind::storage);
-    allocate(BIND_SORTED, "sorted photons", slots * sizeof(gpu::Photon), Kind::float_texels);
-    allocate(BIND_SORTED_FLUX, "sorted photon flux", slots * sizeof(gpu::PhotonFlux), Kind::float_texels);
+    allocate(BIND_SORTED, "sorted photons", slots * sizeof(gpu::Photon), Kind::uint_texels);
+    allocate(BIND_SORTED_FLUX, "sorted photon flux", slots * sizeof(gpu::PhotonFlux), Kind::uint_texels);
     allocate(BIND_PAIRS_A, "pairs a", slots * sizeof(gpu::uvec2), Kind::storage);
     allocate(BIND_PAIRS_B, "pairs b", slots * sizeof(gpu::uvec2), Kind::storage);
     bindings_.bind(BIND_SORTED_TEXELS, buffer(BIND_SORTED));

@@ -24,7 +24,7 @@ gpu::SurfaceMaterial surface_of(const Material& material) {
     surface.color = material.base_color;
     surface.emission = material.emission;
     surface.ior = material.ior;
-    surface.double_sided = material.double_sided ? 1 : 0;
+    if (material.double_sided) surface.kind |= SURFACE_DOUBLE_SIDED;
     return surface;
 }
 
@@ -53,7 +53,7 @@ std::optional<std::string> left_out(const Material& material) {
 std::string describe_material(const Material& material) {
     const gpu::SurfaceMaterial surface = surface_of(material);
     std::string line;
-    switch (surface.kind) {
+    switch (kind_of(material)) {
         case SURFACE_MIRROR: line = fmt::format("mirror, reflectance {}", text(surface.color)); break;
         case SURFACE_DIELECTRIC: line = fmt::format("smooth dielectric, ior {:g}, tint {}", surface.ior, text(surface.color)); break;
         default: line = fmt::format("diffuse, albedo {}", text(surface.color)); break;

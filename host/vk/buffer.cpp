@@ -27,11 +27,18 @@ vk::BufferUsageFlags usage_of(Buffer::Kind kind) {
     switch (kind) {
         case Buffer::Kind::uniform: return transfer | Usage::eUniformBuffer;
         case Buffer::Kind::storage: return transfer | Usage::eStorageBuffer;
-        case Buffer::Kind::uint_texels: return transfer | Usage::eUniformTexelBuffer;
-        case Buffer::Kind::float_texels: return transfer | Usage::eUniformTexelBuffer | Usage::eStorageBuffer;
+        default: return transfer | Usage::eUniformTexelBuffer | Usage::eStorageBuffer;
     }
-    assert(false);
-    return transfer;
+}
+
+/// The format of the texels; none where the buffer is not read as texels.
+std::optional<vk::Format> texel_format(Buffer::Kind kind) {
+    switch (kind) {
+        case Buffer::Kind::uint_texels: return vk::Format::eR32G32B32A32Uint;
+        case Buffer::Kind::float_texels: return vk::Format::eR32G32B32A32Sfloat;
+        case Buffer::Kind::word_texels: return vk::Format::eR32Uint;
+        default: return std::nullopt;
+    }
 }
 
 void check_limits(const Buffer::Impl& buffer, const vk::PhysicalDeviceLimits& limits) {
@@ -40,13 +47,11 @@ void check_limits(const Buffer::Impl& buffer, const vk::PhysicalDeviceLimits& li
                     fmt::format("buffer '{}' needs {} {}, the device '{}' allows {}", buffer.name, value, what,
                                 buffer.device->info().name, limit));
     };
-    const bool texels = buffer.kind == Buffer::Kind::uint_texels || buffer.kind == Buffer::Kind::float_texels;
-    if (texels && buffer.bytes / 16 > limits.maxTexelBufferElements) {
-        refuse("texels", buffer.bytes / 16, limits.maxTexelBufferElements);
+    const std::uint64_t texels = buffer.bytes / (buffer.kind == Buffer::Kind::word_texels ? 4 : 16);
+    if (texel_format(buffer.kind) && texels > limits.maxTexelBufferElements) {
+        refuse("texels", texels, limits.maxTexelBufferElements);
     }
-    if (buffer.kind != Buffer::Kind::uint_texels && buffer.bytes > limits.maxStorageBufferRange) {
-        refuse("bytes", buffer.bytes, limits.maxStorageBufferRange);
-    }
+    if (buffer.bytes > limits.maxStorageBufferRange) refuse("bytes", buffer.bytes, limits.maxStorageBufferRange);
 }
 
 /// Device memory for `buffer`: device-local and mappable where there is such a type, else device-local.
@@ -98,10 +103,8 @@ Buffer::Buffer(Device& device, std::string name, std::uint64_t bytes, Kind kind)
                 gpu.peak = std::max(gpu.peak, gpu.allocated);
                 impl.buffer->bindMemory(**impl.memory, 0);
                 if (mappable) impl.mapped = static_cast<std::byte*>(impl.memory->mapMemory(0, VK_WHOLE_SIZE));
-                if (kind == Kind::uint_texels || kind == Kind::float_texels) {
-                    const auto format = kind == Kind::uint_texels ? vk::Format::eR32G32B32A32Uint
-                                                                  : vk::Format::eR32G32B32A32Sfloat;
-                    impl.view.emplace(*gpu.device, vk::BufferViewCreateInfo({}, **impl.buffer, format, 0, VK_WHOLE_SIZE));
+                if (const auto format = texel_format(kind)) {
+                    impl.view.emplace(*gpu.device, vk::BufferViewCreateInfo({}, **impl.buffer, *format, 0, VK_WHOLE_SIZE));
                 }
             });
     if (impl.mapped) {

@@ -17,8 +17,9 @@ public:
     enum class Kind {
         uniform,
         storage,
-        uint_texels,   // read as RGBA32UI texels
+        uint_texels,   // read as RGBA32UI texels, and as storage
         float_texels,  // read as RGBA32F texels, and as storage
+        word_texels,   // read as R32UI texels, and as storage
     };
 
     /// At least `bytes` bytes of zeros (an empty buffer holds 16). Throws Error(out_of_device_memory) with the name,

@@ -254,7 +254,8 @@ bool Device::validating() const { return impl_->messenger.has_value(); }
 std::uint32_t Device::step_budget() const {
     // llvmpipe of Mesa 22.3 ends every loop, in silence, once the loops of a SIMD group have made 65,535 trips in all.
     // A group's trips are at most the sum over its lanes; a kernel may overdraw its budget by a few hundred.
-    return impl_->loop_limit ? 65535 / impl_->subgroup_size - 1024 : 1u << 20;
+    // Elsewhere: counters of 16 bits of the gather never overflow in a dispatch.
+    return impl_->loop_limit ? 65535 / impl_->subgroup_size - 1024 : 65535 - 1024;
 }
 
 std::uint64_t Device::allocated_bytes() const { return impl_->allocated; }

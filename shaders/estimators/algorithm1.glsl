@@ -20,10 +20,10 @@ void clear_statistics(uint pixel) {
             break;
         case ESTIMATOR_FTEST:
         case ESTIMATOR_FTEST_FOLD:
-            for (uint row = 0u; row < 2u * F_CELLS + RINGS; ++row) moments[row_of(row, pixel)] = 0.0;
+            for (uint row = 0u; row < 2u * DISC_CELLS + RINGS; ++row) moments[row_of(row, pixel)] = 0.0;
             break;
         default:
-            for (uint row = 0u; row < RINGS * RING_CELLS; ++row) tally[row_of(row, pixel)] = 0u;
+            for (uint row = 0u; row < DISC_CELLS; ++row) tally[row_of(row, pixel)] = 0u;
             break;
     }
 }

@@ -29,12 +29,14 @@ float appm_pilot2(uint pixel) {
 // The stencil reaches a step and a bandwidth far.
 float appm_search_radius2(uint pixel, float radius2) { return max(radius2, 4.0 * appm_pilot2(pixel)); }
 
+// Sums of this invocation, in the order of APPM_SECOND_MOMENT_NOW and APPM_LAPLACIAN_NOW.
+vec2 appm_sums;
+
 void appm_record(uint pixel, Accepted photon, bool inside) {
     float radius2 = pixels[pixel].radius2;
     float y = luminance(hit_weight[pixel].weight * photon.power) * params.inverse_paths;
     if (inside) {
-        moments[row_of(APPM_SECOND_MOMENT_NOW, pixel)] +=
-            y * y * (float(params.photons) * appm_kernel_weight(photon.q) / (PI * radius2));
+        appm_sums.x += y * y * (float(params.photons) * appm_kernel_weight(photon.q) / (PI * radius2));
     }
     // Offset in units of r_d; sum over the four neighbours at distance 1, less four times the centre.
     float pilot2 = appm_pilot2(pixel);
@@ -42,7 +44,12 @@ void appm_record(uint pixel, Accepted photon, bool inside) {
     float stencil = -4.0 * appm_kernel_weight(dot(e, e));
     stencil += appm_kernel_weight(dot(e, e) + 2.0 * e.x + 1.0) + appm_kernel_weight(dot(e, e) - 2.0 * e.x + 1.0);
     stencil += appm_kernel_weight(dot(e, e) + 2.0 * e.y + 1.0) + appm_kernel_weight(dot(e, e) - 2.0 * e.y + 1.0);
-    moments[row_of(APPM_LAPLACIAN_NOW, pixel)] += y * stencil / (PI * pilot2 * pilot2);
+    appm_sums.y += y * stencil / (PI * pilot2 * pilot2);
+}
+
+void appm_flush(uint pixel) {
+    moments[row_of(APPM_SECOND_MOMENT_NOW, pixel)] += appm_sums.x;
+    moments[row_of(APPM_LAPLACIAN_NOW, pixel)] += appm_sums.y;
 }
 
 void appm_update(uint pixel, bool diffuse, uint found, inout PixelState state) {

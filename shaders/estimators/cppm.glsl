@@ -1,7 +1,7 @@
 // CPPM: Lin et al. 2020, Algorithm 1. The radius stays while the photons in the disc pass a chi-squared test for a
 // uniform density; it shrinks where they fail.
 
-void cppm_record(uint pixel, Accepted photon) { ++tally[row_of(cell_bin(photon.v, photon.q), pixel)]; }
+void cppm_record(Accepted photon) { count(cell_bin(photon.v, photon.q)); }
 
 uint tally_sum(uint pixel, uint cells) {
     uint sum = 0u;

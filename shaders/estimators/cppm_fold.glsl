@@ -1,3 +1,3 @@
 // CPPM with folded sectors: the hypothesis of cppm-gof, p(x) + p(-x) constant, tested without random numbers. Opposite
 // sectors are one cell; half as many cells hold twice as many photons each, and no power is lost to the flips.
-void cppm_fold_record(uint pixel, Accepted photon) { ++tally[row_of(cell_bin(photon.v, photon.q), pixel)]; }
+void cppm_fold_record(Accepted photon) { count(cell_bin(photon.v, photon.q)); }

@@ -3,5 +3,5 @@
 // changes the count only, never the radiance.
 void cppm_gof_record(uint pixel, Accepted photon) {
     bool flip = random4(params.seed, launch.iteration, STREAM_GATHER, pixel, photon.index).x < 0.5;
-    ++tally[row_of(cell_bin(flip ? -photon.v : photon.v, photon.q), pixel)];
+    count(cell_bin(flip ? -photon.v : photon.v, photon.q));
 }

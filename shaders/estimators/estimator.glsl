@@ -1,5 +1,6 @@
 // The family's one switch. An estimator has these hooks:
-//   record(pixel, photon, inside): a photon was accepted; `inside`: within R, else within search_radius2 only;
+//   record(pixel, photon, inside): a photon was accepted; `inside`: within R, else within search_radius2 only. It
+//   adds to registers of the invocation, which begin() clears; flush(pixel) adds them to the pixel's statistics;
 //   update(pixel, diffuse, found, state): after an iteration in which `found` photons were accepted within R
 //   (`diffuse`: the pixel saw a surface to gather on); decides state.radius2 for the next one;
 //   clear_statistics(pixel): forgets what was recorded, when a radius begins;
@@ -25,12 +26,18 @@ struct Accepted {
 #include "estimators/ftest.glsl"
 #include "estimators/algorithm1.glsl"
 
+void begin() {
+    for (uint word = 0u; word < (DISC_CELLS + 1u) / 2u; ++word) counted[word] = 0u;
+    for (uint cell = 0u; cell < DISC_CELLS; ++cell) contributed[cell] = 0.0;
+    appm_sums = vec2(0.0);
+}
+
 void record(uint pixel, Accepted photon, bool inside) {
     switch (ESTIMATOR) {
         case ESTIMATOR_CPPM:
-        case ESTIMATOR_CPPM_LF: cppm_record(pixel, photon); break;
+        case ESTIMATOR_CPPM_LF: cppm_record(photon); break;
         case ESTIMATOR_CPPM_GOF: cppm_gof_record(pixel, photon); break;
-        case ESTIMATOR_CPPM_FOLD: cppm_fold_record(pixel, photon); break;
+        case ESTIMATOR_CPPM_FOLD: cppm_fold_record(photon); break;
         case ESTIMATOR_APPM: appm_record(pixel, photon, inside); break;
         case ESTIMATOR_FTEST:
         case ESTIMATOR_FTEST_FOLD: ftest_record(pixel, photon); break;
@@ -47,6 +54,19 @@ void update(uint pixel, bool diffuse, uint found, inout PixelState state) {
         case ESTIMATOR_FTEST:
         case ESTIMATOR_FTEST_FOLD: ftest_sample(pixel, diffuse, state); algorithm1_update(pixel, found, state); break;
         default: algorithm1_update(pixel, found, state); break;
+    }
+}
+
+void flush(uint pixel) {
+    switch (ESTIMATOR) {
+        case ESTIMATOR_APPM: appm_flush(pixel); break;
+        case ESTIMATOR_FTEST:
+        case ESTIMATOR_FTEST_FOLD: ftest_flush(pixel); break;
+        case ESTIMATOR_CPPM:
+        case ESTIMATOR_CPPM_LF:
+        case ESTIMATOR_CPPM_GOF:
+        case ESTIMATOR_CPPM_FOLD: tally_flush(pixel); break;
+        default: break;
     }
 }
 

@@ -7,22 +7,29 @@
 
 layout(binding = BIND_QUANTILES, scalar) readonly buffer QuantileBlock { float f_quantiles[]; };
 
-const uint F_CELLS = RINGS * RING_CELLS;
+// Contributions a cell that this invocation has accepted, in registers as `counted`.
+float contributed[DISC_CELLS];
 
 void ftest_record(uint pixel, Accepted photon) {
-    moments[row_of(cell_bin(photon.v, photon.q), pixel)] += luminance(hit_albedo(pixel) * photon.power);
+    uint bin = cell_bin(photon.v, photon.q);
+    float x = luminance(hit_albedo(pixel) * photon.power);
+    for (uint cell = 0u; cell < DISC_CELLS; ++cell) contributed[cell] += cell == bin ? x : 0.0;
+}
+
+void ftest_flush(uint pixel) {
+    for (uint cell = 0u; cell < DISC_CELLS; ++cell) moments[row_of(cell, pixel)] += contributed[cell];
 }
 
 // Takes this iteration's sums as one more sample of every cell.
 void ftest_sample(uint pixel, bool diffuse, inout PixelState state) {
     if (!diffuse) return;
     state.count += 1.0;
-    for (uint bin = 0u; bin < F_CELLS; ++bin) {
+    for (uint bin = 0u; bin < DISC_CELLS; ++bin) {
         float x = moments[row_of(bin, pixel)];
-        float mean = moments[row_of(F_CELLS + bin, pixel)];
+        float mean = moments[row_of(DISC_CELLS + bin, pixel)];
         float next = mean + (x - mean) / state.count;
-        moments[row_of(F_CELLS + bin, pixel)] = next;
-        moments[row_of(2u * F_CELLS + bin / RING_CELLS, pixel)] += (x - mean) * (x - next);
+        moments[row_of(DISC_CELLS + bin, pixel)] = next;
+        moments[row_of(2u * DISC_CELLS + bin / RING_CELLS, pixel)] += (x - mean) * (x - next);
         moments[row_of(bin, pixel)] = 0.0;
     }
 }
@@ -41,15 +48,15 @@ float f_ratio(uint pixel, uint rings, float m) {
     if (m < 3.0) return 0.0;
     uint cells = rings * RING_CELLS;
     float mean = 0.0;
-    for (uint bin = 0u; bin < cells; ++bin) mean += moments[row_of(F_CELLS + bin, pixel)];
+    for (uint bin = 0u; bin < cells; ++bin) mean += moments[row_of(DISC_CELLS + bin, pixel)];
     mean /= float(cells);
     float between = 0.0;
     for (uint bin = 0u; bin < cells; ++bin) {
-        float deviation = moments[row_of(F_CELLS + bin, pixel)] - mean;
+        float deviation = moments[row_of(DISC_CELLS + bin, pixel)] - mean;
         between += deviation * deviation;
     }
     float within = 0.0;
-    for (uint ring = 0u; ring < rings; ++ring) within += moments[row_of(2u * F_CELLS + ring, pixel)];
+    for (uint ring = 0u; ring < rings; ++ring) within += moments[row_of(2u * DISC_CELLS + ring, pixel)];
     if (between == 0.0) return 0.0;
     if (within == 0.0) return 3.0e38;
     float f = (m * between / float(cells - 1u)) / (within / (float(cells) * (m - 1.0)));

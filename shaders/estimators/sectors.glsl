@@ -19,6 +19,25 @@ uint cell_bin(vec2 v, float q) {
     return ring * RING_CELLS + sector;
 }
 
+const uint DISC_CELLS = RINGS * RING_CELLS;
+
+// Photons a cell that this invocation has accepted, two counters of 16 bits a word: the step budget stays below 2^16.
+// Registers, added to under a comparison a word: an array in memory, or the tally itself, costs a loop over the lanes
+// of the SIMD group for every candidate.
+uint counted[(DISC_CELLS + 1u) / 2u];
+
+void count(uint bin) {
+    for (uint word = 0u; word < (DISC_CELLS + 1u) / 2u; ++word) {
+        counted[word] += bin / 2u == word ? 1u << (16u * (bin % 2u)) : 0u;
+    }
+}
+
+void tally_flush(uint pixel) {
+    for (uint bin = 0u; bin < DISC_CELLS; ++bin) {
+        tally[row_of(bin, pixel)] += counted[bin / 2u] >> (16u * (bin % 2u)) & 0xffffu;
+    }
+}
+
 // c * observed - sum, exact in 64 bits, then rounded once: the textbook form of chi-squared cancels in floats.
 float scaled_difference(uint cells, uint observed, uint sum) {
     uint high, low, borrow;

@@ -1,5 +1,14 @@
 // Light sources. Reads lights.
-layout(binding = BIND_LIGHTS, scalar) readonly buffer LightBlock { Light lights[]; };
+layout(binding = BIND_LIGHTS) uniform usamplerBuffer lights;
+
+Light light_at(uint index) {
+    uvec4 a = texelFetch(lights, int(index) * 4);
+    uvec4 b = texelFetch(lights, int(index) * 4 + 1);
+    uvec4 c = texelFetch(lights, int(index) * 4 + 2);
+    uvec4 d = texelFetch(lights, int(index) * 4 + 3);
+    return Light(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), uintBitsToFloat(b.w), uintBitsToFloat(c.xyz), c.w,
+                 uintBitsToFloat(d.xyz), d.w);
+}
 
 // The start of a light path: lights in proportion to their power (alias table, Walker 1974), then position and
 // direction in proportion to what the light emits there, so that every path carries the same power at its start.
@@ -7,8 +16,8 @@ layout(binding = BIND_LIGHTS, scalar) readonly buffer LightBlock { Light lights[
 void emit(vec4 u, vec4 v, out vec3 origin, out vec3 direction, out vec3 power) {
     float scaled = u.x * float(params.light_count);
     uint index = min(uint(scaled), params.light_count - 1u);
-    if (u.y >= lights[index].keep) index = lights[index].alias_entry;
-    Light light = lights[index];
+    Light light = light_at(index);
+    if (u.y >= light.keep) light = light_at(light.alias_entry);
     power = light.power;
     if (light.kind == LIGHT_TRIANGLE) {
         vec2 b = sample_triangle(u.zw);

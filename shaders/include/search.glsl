@@ -1,7 +1,7 @@
 // A resumable walk over the photons of the cells that a ball touches, segment of a row by segment. Reads the grid, the
 // cell starts and the sorted photons.
-layout(binding = BIND_COUNTERS, scalar) readonly buffer CounterBlock { uint counters[]; };
-layout(binding = BIND_SORTED_TEXELS) uniform samplerBuffer sorted;
+layout(binding = BIND_COUNTER_TEXELS) uniform usamplerBuffer counters;
+layout(binding = BIND_SORTED_TEXELS) uniform usamplerBuffer sorted;
 layout(binding = BIND_CURSOR, scalar) buffer CursorBlock { Cursor cursors[]; };
 
 // Photons arriving at surfaces that turn away from the pixel's by more than acos(0.1) light another wall.
@@ -30,9 +30,9 @@ Walk walk_segment(CellBox box, ivec3 cell) {
     Walk walk;
     walk.cell = cell;
     walk.last_x = grid.dims.w == 0u ? box.high.x : min(box.high.x, cell.x | (HASH_RUN - 1));
-    uint start = cell_index(cell);
-    walk.first = counters[start];
-    walk.last = counters[start + uint(walk.last_x - cell.x) + 1u];
+    int start = int(cell_index(cell));
+    walk.first = texelFetch(counters, start).x;
+    walk.last = texelFetch(counters, start + walk.last_x - cell.x + 1).x;
     return walk;
 }
 

@@ -29,7 +29,7 @@ vec3 mirror_direction(vec3 direction, vec3 normal, vec3 geometric) {
 // (Veach 1997, section 5.2); false for the flux of photons.
 vec3 scatter_specular(SurfaceMaterial material, Surface surface, float u, bool radiance, inout vec3 direction) {
     float cosine = min(1.0, -dot(direction, surface.normal));
-    if (material.kind == SURFACE_MIRROR) {
+    if (kind_of(material) == SURFACE_MIRROR) {
         direction = mirror_direction(direction, surface.normal, surface.geometric);
         return fresnel_metal(material.color, cosine);
     }

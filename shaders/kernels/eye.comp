@@ -63,14 +63,14 @@ void main() {
         if (found == TRACE_MISS) break;
         distance += hit.t;
         Surface surface = surface_at(hit, direction);
-        SurfaceMaterial material = materials[surface.material];
+        SurfaceMaterial material = material_at(surface.material);
         if ((FEATURES & FEATURE_AOVS) != 0u && depth == 0u) {
             Aovs sum = aovs[pixel];
             aovs[pixel] = Aovs(sum.albedo + material.color, sum.normal + surface.normal,
                                sum.depth + distance * dot(direction, params.forward), sum.hits + 1u);
         }
-        if (surface.front || material.double_sided != 0u) emission += throughput * material.emission;
-        if (material.kind == SURFACE_DIFFUSE) {
+        if (surface.front || (material.kind & SURFACE_DOUBLE_SIDED) != 0u) emission += throughput * material.emission;
+        if (kind_of(material) == SURFACE_DIFFUSE) {
             weight.weight = throughput * material.color * (1.0 / PI);
             weight.normal = pack_direction(surface.normal);
             position.position = surface.position;

@@ -14,7 +14,7 @@
 #include "include/pixels.glsl"
 #include "estimators/estimator.glsl"
 
-layout(binding = BIND_FLUX_TEXELS) uniform samplerBuffer sorted_flux;
+layout(binding = BIND_FLUX_TEXELS) uniform usamplerBuffer sorted_flux;
 
 void main() {
     uint pixel = invocation();
@@ -40,21 +40,23 @@ void main() {
     tangent *= inverse_radius;
     bitangent *= inverse_radius;
 
+    begin();
     int steps = int(params.step_budget);
     float reach2 = search_radius2(pixel, radius2);
     CellBox box = cell_box(position, sqrt(reach2));
     Walk walk;
     FOR_PHOTONS(box, cursor, walk, steps, {
-        vec4 photon = texelFetch(sorted, int(walk.first));
-        vec3 offset = photon.xyz - position;
+        uvec4 photon = texelFetch(sorted, int(walk.first));
+        vec3 place = uintBitsToFloat(photon.xyz);
+        vec3 offset = place - position;
         float squared = dot(offset, offset);
-        if (squared < reach2 && same_side(floatBitsToUint(photon.w), normal) && in_segment(walk, photon.xyz)) {
-            vec4 flux = texelFetch(sorted_flux, int(walk.first));
-            vec3 power = flux.xyz;
+        if (squared < reach2 && same_side(photon.w, normal) && in_segment(walk, place)) {
+            uvec4 flux = texelFetch(sorted_flux, int(walk.first));
+            vec3 power = uintBitsToFloat(flux.xyz);
             if ((FEATURES & FEATURE_SMOOTH_DIFFUSE) != 0u) {
                 // Photons arrive per area of the true surface, the BRDF is that of the shaded one.
-                vec3 towards = unpack_direction(floatBitsToUint(flux.w));
-                vec3 geometric = unpack_direction(floatBitsToUint(photon.w));
+                vec3 towards = unpack_direction(flux.w);
+                vec3 geometric = unpack_direction(photon.w);
                 power *= max(0.0, dot(towards, normal)) / max(0.01, dot(towards, geometric));
             }
             bool inside = squared < radius2;
@@ -64,6 +66,7 @@ void main() {
             record(pixel, Accepted(vec2(dot(offset, tangent), dot(offset, bitangent)), q, power, walk.first), inside);
         }
     })
+    flush(pixel);
     gathered[pixel] = sum;
     if (walked(cursor, box)) {
         cursor.cell.x = CURSOR_DONE;

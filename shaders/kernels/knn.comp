@@ -66,10 +66,11 @@ void main() {
         box = cell_box(position, kept.flux.z);
         float reach2 = kept.flux.z * kept.flux.z;
         FOR_PHOTONS(box, cursor, walk, steps, {
-            vec4 photon = texelFetch(sorted, int(walk.first));
-            vec3 offset = photon.xyz - position;
+            uvec4 photon = texelFetch(sorted, int(walk.first));
+            vec3 place = uintBitsToFloat(photon.xyz);
+            vec3 offset = place - position;
             float squared = dot(offset, offset);
-            if (squared < reach2 && same_side(floatBitsToUint(photon.w), normal) && in_segment(walk, photon.xyz)) {
+            if (squared < reach2 && same_side(photon.w, normal) && in_segment(walk, place)) {
                 steps -= keep(kept, squared, pixel);
             }
         })

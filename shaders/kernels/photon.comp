@@ -84,9 +84,9 @@ void main() {
         bool alive = found == TRACE_HIT;
         if (alive) {
             Surface surface = surface_at(hit, state.direction);
-            SurfaceMaterial material = materials[surface.material];
+            SurfaceMaterial material = material_at(surface.material);
             vec4 u = random4(params.seed, launch.iteration, STREAM_PHOTON, path, state.bounce + 1u);
-            if (material.kind == SURFACE_DIFFUSE) {
+            if (kind_of(material) == SURFACE_DIFFUSE) {
                 alive = largest(material.color) > 0.0;  // what is black reflects no photon to any eye
                 if (alive) {
                     if (state.stored < params.photon_capacity) {

@@ -42,6 +42,7 @@ using uint = std::uint32_t;
 #define SURFACE_DIFFUSE 0u
 #define SURFACE_MIRROR 1u
 #define SURFACE_DIELECTRIC 2u
+#define SURFACE_DOUBLE_SIDED 0x80000000u  // emits from both sides
 
 // Light kinds.
 #define LIGHT_TRIANGLE 0u
@@ -86,15 +87,15 @@ struct TriangleShading {
     uint material;     // index | SHADING_FLAT
 };
 
+// 32 bytes, read as 2 uvec4 texels.
 struct SurfaceMaterial {
     vec3 color;        // diffuse: albedo; mirror: reflectance at normal incidence; dielectric: tint of transmission
-    uint kind;         // SURFACE_*
+    uint kind;         // SURFACE_* | SURFACE_DOUBLE_SIDED
     vec3 emission;     // radiance, W m^-2 sr^-1
     float ior;         // dielectric
-    uint double_sided; // emits from both sides
 };
 
-// One entry of the alias table of lights. A path that starts here carries `power`: flux of the light / its probability.
+// One entry of the alias table of lights; 64 bytes, read as 4 uvec4 texels. A path that starts here carries `power`: flux of the light / its probability.
 struct Light {
     vec3 position;     // triangle: v0; point, spot: position; directional: centre of the disc that covers the scene
     uint kind;         // LIGHT_*
@@ -264,6 +265,7 @@ struct Launch {
 static_assert(sizeof(BvhNode) == 64);
 static_assert(sizeof(TriangleGeometry) == 48);
 static_assert(sizeof(TriangleShading) == 16);
+static_assert(sizeof(SurfaceMaterial) == 32 && sizeof(Light) == 64);
 static_assert(sizeof(Photon) == 16 && sizeof(PhotonFlux) == 16);
 static_assert(sizeof(HitPosition) == 16 && sizeof(HitWeight) == 16 && sizeof(HitEmission) == 16);
 static_assert(sizeof(Gathered) == 16 && sizeof(Film) == 24);

@@ -128,7 +128,7 @@ void add_sphere(Scene& scene, const glm::dvec3& centre, double radius, int level
         std::vector<std::array<std::size_t, 3>> finer;
         for (const auto& [i, j, k] : faces) {
             const std::size_t a = middle(i, j), b = middle(j, k), c = middle(k, i);
-            finer.insert(finer.end(), {{i, a, c}, {a, j, b}, {c, b, k}, {a, b, c}});
+            for (const auto& face : {std::array{i, a, c}, {a, j, b}, {c, b, k}, {a, b, c}}) finer.push_back(face);
         }
         faces = finer;
     }

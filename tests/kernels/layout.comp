@@ -1,0 +1,87 @@
+#version 460
+// Reads elements 0 and 1 of an array of every shared struct, adds to every scalar of every member its ordinal in the
+// struct, and writes the sums to elements 2 and 3; the uniform block and the push constants go to element 4.
+#extension GL_GOOGLE_include_directive : require
+#include "shared/types.h"
+#include "shared/bindings.h"
+#include "shared/estimators.h"
+#include "layout_members.h"
+
+layout(local_size_x_id = SPEC_WORKGROUP) in;
+layout(push_constant, scalar) uniform LaunchBlock { Launch launch; };
+layout(binding = BIND_PARAMS, scalar) uniform ParamsBlock { Params params; };
+
+uint ordinal;
+
+void bump(inout uint x) { x += ++ordinal; }
+void bump(inout float x) { x += float(++ordinal); }
+void bump(inout vec2 v) { for (int c = 0; c < 2; ++c) v[c] += float(++ordinal); }
+void bump(inout vec3 v) { for (int c = 0; c < 3; ++c) v[c] += float(++ordinal); }
+void bump(inout uvec3 v) { for (int c = 0; c < 3; ++c) v[c] += ++ordinal; }
+void bump(inout uvec4 v) { for (int c = 0; c < 4; ++c) v[c] += ++ordinal; }
+void bump(inout uint a[2]) { for (int i = 0; i < 2; ++i) a[i] += ++ordinal; }
+void bump(inout uint a[3]) { for (int i = 0; i < 3; ++i) a[i] += ++ordinal; }
+void bump(inout uint a[4]) { for (int i = 0; i < 4; ++i) a[i] += ++ordinal; }
+void bump(inout uint a[RADIUS_BINS]) { for (int i = 0; i < RADIUS_BINS; ++i) a[i] += ++ordinal; }
+void bump(inout float a[MAX_RINGS]) { for (int i = 0; i < MAX_RINGS; ++i) a[i] += float(++ordinal); }
+void bump(inout vec2 a[MAX_SECTORS / 2]) { for (int i = 0; i < MAX_SECTORS / 2; ++i) bump(a[i]); }
+void bump(inout vec2 a[MAX_SECTORS]) { for (int i = 0; i < MAX_SECTORS; ++i) bump(a[i]); }
+
+#define X(member) bump(value.member);
+#define BLOCK(BINDING, Block, Struct, values) layout(binding = BINDING, scalar) buffer Block { Struct values[]; };
+#define BUMP(Struct, value_in, value_out, MEMBERS) \
+    {                                              \
+        Struct value = value_in;                   \
+        ordinal = 0u;                              \
+        MEMBERS                                    \
+        value_out = value;                         \
+    }
+#define ROUND_TRIP(Struct, values, MEMBERS) \
+    BUMP(Struct, values[0], values[2], MEMBERS) BUMP(Struct, values[1], values[3], MEMBERS)
+
+BLOCK(6, BvhNodeBlock, BvhNode, bvh_nodes)
+BLOCK(7, TriangleGeometryBlock, TriangleGeometry, triangle_geometries)
+BLOCK(8, TriangleShadingBlock, TriangleShading, triangle_shadings)
+BLOCK(9, SurfaceMaterialBlock, SurfaceMaterial, surface_materials)
+BLOCK(10, LightBlock, Light, lights)
+BLOCK(11, PhotonBlock, Photon, photons)
+BLOCK(12, PhotonFluxBlock, PhotonFlux, photon_fluxes)
+BLOCK(13, HitPositionBlock, HitPosition, hit_positions)
+BLOCK(14, HitWeightBlock, HitWeight, hit_weights)
+BLOCK(15, HitEmissionBlock, HitEmission, hit_emissions)
+BLOCK(16, GatheredBlock, Gathered, gathereds)
+BLOCK(17, PixelStateBlock, PixelState, pixel_states)
+BLOCK(18, AovsBlock, Aovs, aovs)
+BLOCK(19, FilmBlock, Film, films)
+BLOCK(20, PathStateBlock, PathState, path_states)
+BLOCK(21, CursorBlock, Cursor, cursors)
+BLOCK(22, GridBlock, Grid, grids)
+BLOCK(23, StatusBlock, Status, statuses)
+BLOCK(24, ParamsArrayBlock, Params, params_array)
+BLOCK(25, LaunchArrayBlock, Launch, launches)
+
+void main() {
+    if (gl_GlobalInvocationID.x != 0u) return;
+    ROUND_TRIP(BvhNode, bvh_nodes, MEMBERS_BVH_NODE)
+    ROUND_TRIP(TriangleGeometry, triangle_geometries, MEMBERS_TRIANGLE_GEOMETRY)
+    ROUND_TRIP(TriangleShading, triangle_shadings, MEMBERS_TRIANGLE_SHADING)
+    ROUND_TRIP(SurfaceMaterial, surface_materials, MEMBERS_SURFACE_MATERIAL)
+    ROUND_TRIP(Light, lights, MEMBERS_LIGHT)
+    ROUND_TRIP(Photon, photons, MEMBERS_PHOTON)
+    ROUND_TRIP(PhotonFlux, photon_fluxes, MEMBERS_PHOTON_FLUX)
+    ROUND_TRIP(HitPosition, hit_positions, MEMBERS_HIT_POSITION)
+    ROUND_TRIP(HitWeight, hit_weights, MEMBERS_HIT_WEIGHT)
+    ROUND_TRIP(HitEmission, hit_emissions, MEMBERS_HIT_EMISSION)
+    ROUND_TRIP(Gathered, gathereds, MEMBERS_GATHERED)
+    ROUND_TRIP(PixelState, pixel_states, MEMBERS_PIXEL_STATE)
+    ROUND_TRIP(Aovs, aovs, MEMBERS_AOVS)
+    ROUND_TRIP(Film, films, MEMBERS_FILM)
+    ROUND_TRIP(PathState, path_states, MEMBERS_PATH_STATE)
+    ROUND_TRIP(Cursor, cursors, MEMBERS_CURSOR)
+    ROUND_TRIP(Grid, grids, MEMBERS_GRID)
+    ROUND_TRIP(Status, statuses, MEMBERS_STATUS)
+    ROUND_TRIP(Params, params_array, MEMBERS_PARAMS)
+    ROUND_TRIP(Launch, launches, MEMBERS_LAUNCH)
+    BUMP(Params, params, params_array[4], MEMBERS_PARAMS)
+    BUMP(Launch, launch, launches[4], MEMBERS_LAUNCH)
+}

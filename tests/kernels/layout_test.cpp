@@ -1,0 +1,135 @@
+// Host and kernels see every member of every shared struct at the same place, in arrays, in the uniform block and in
+// push constants.
+
+#include <cstring>
+#include <type_traits>
+
+#include <gtest/gtest.h>
+
+#include "kernels/layout_members.h"
+#include "kernels/probe.h"
+#include "support/gpu.h"
+
+namespace vkcppm::test {
+namespace {
+
+constexpr std::uint32_t layout_words[] = {
+#include "layout.spv.inc"
+};
+
+template <typename Visit>
+void scalars(float& x, Visit visit) {
+    visit(x);
+}
+template <typename Visit>
+void scalars(std::uint32_t& x, Visit visit) {
+    visit(x);
+}
+template <glm::length_t L, typename T, glm::qualifier Q, typename Visit>
+void scalars(glm::vec<L, T, Q>& v, Visit visit) {
+    for (glm::length_t c = 0; c < L; ++c) visit(v[c]);
+}
+template <typename T, std::size_t N, typename Visit>
+void scalars(T (&array)[N], Visit visit) {
+    for (T& element : array) scalars(element, visit);
+}
+
+// One overload a struct: visits its scalars in order.
+#define X(member) scalars(value.member, visit);
+#define VISITOR(Struct, MEMBERS)                        \
+    template <typename Visit>                           \
+    void each_scalar(gpu::Struct& value, Visit visit) { \
+        MEMBERS                                         \
+    }
+VISITOR(BvhNode, MEMBERS_BVH_NODE)
+VISITOR(TriangleGeometry, MEMBERS_TRIANGLE_GEOMETRY)
+VISITOR(TriangleShading, MEMBERS_TRIANGLE_SHADING)
+VISITOR(SurfaceMaterial, MEMBERS_SURFACE_MATERIAL)
+VISITOR(Light, MEMBERS_LIGHT)
+VISITOR(Photon, MEMBERS_PHOTON)
+VISITOR(PhotonFlux, MEMBERS_PHOTON_FLUX)
+VISITOR(HitPosition, MEMBERS_HIT_POSITION)
+VISITOR(HitWeight, MEMBERS_HIT_WEIGHT)
+VISITOR(HitEmission, MEMBERS_HIT_EMISSION)
+VISITOR(Gathered, MEMBERS_GATHERED)
+VISITOR(PixelState, MEMBERS_PIXEL_STATE)
+VISITOR(Aovs, MEMBERS_AOVS)
+VISITOR(Film, MEMBERS_FILM)
+VISITOR(PathState, MEMBERS_PATH_STATE)
+VISITOR(Cursor, MEMBERS_CURSOR)
+VISITOR(Grid, MEMBERS_GRID)
+VISITOR(Status, MEMBERS_STATUS)
+VISITOR(Params, MEMBERS_PARAMS)
+VISITOR(Launch, MEMBERS_LAUNCH)
+
+/// A struct whose scalars all differ; `element` tells elements of an array apart. Small enough to be exact as floats.
+template <typename S>
+S distinct(std::uint32_t element) {
+    S value{};
+    std::uint32_t next = 1000 * (element + 1);
+    each_scalar(value, [&](auto& scalar) { scalar = std::remove_reference_t<decltype(scalar)>(next += 3); });
+    return value;
+}
+
+/// What the probe makes of it: the n-th scalar grows by n.
+template <typename S>
+S bumped(S value) {
+    std::uint32_t ordinal = 0;
+    each_scalar(value, [&](auto& scalar) { scalar += std::remove_reference_t<decltype(scalar)>(++ordinal); });
+    return value;
+}
+
+class Layout : public GpuTest {
+protected:
+    template <typename S>
+    void upload(std::uint32_t binding) {
+        probe_.input(binding, std::vector<S>{distinct<S>(0), distinct<S>(1), S{}, S{}, S{}});
+    }
+
+    template <typename S>
+    void expect_equal(const char* name, S got, S want) {
+        std::vector<double> wanted;
+        each_scalar(want, [&](auto& scalar) { wanted.push_back(double(scalar)); });
+        std::size_t ordinal = 0;
+        each_scalar(got, [&](auto& scalar) {
+            EXPECT_EQ(double(scalar), wanted[ordinal]) << name << ", scalar " << ordinal << " of " << wanted.size();
+            ++ordinal;
+        });
+    }
+
+    template <typename S>
+    void check(std::uint32_t binding, const char* name) {
+        std::size_t listed = 0;
+        S value{};
+        each_scalar(value, [&](auto&) { ++listed; });
+        ASSERT_EQ(4 * listed, sizeof(S)) << name << " has a member that layout_members.h does not list";
+        const std::vector<S> values = probe_.result<S>(binding, 5);
+        expect_equal(name, values[0], distinct<S>(0));
+        expect_equal(name, values[1], distinct<S>(1));
+        expect_equal(name, values[2], bumped(distinct<S>(0)));
+        expect_equal(name, values[3], bumped(distinct<S>(1)));
+    }
+
+    Probe probe_{"layout", layout_words};
+};
+
+#define FOR_STRUCTS(F)                                                                                              \
+    F(6, BvhNode) F(7, TriangleGeometry) F(8, TriangleShading) F(9, SurfaceMaterial) F(10, Light) F(11, Photon)     \
+    F(12, PhotonFlux) F(13, HitPosition) F(14, HitWeight) F(15, HitEmission) F(16, Gathered) F(17, PixelState)      \
+    F(18, Aovs) F(19, Film) F(20, PathState) F(21, Cursor) F(22, Grid) F(23, Status) F(24, Params) F(25, Launch)
+
+TEST_F(Layout, EveryMemberStandsWhereTheHostPutsIt) {
+#define UPLOAD(binding, Struct) upload<gpu::Struct>(binding);
+    FOR_STRUCTS(UPLOAD)
+    const auto params = distinct<gpu::Params>(7);
+    probe_.input(BIND_PARAMS, std::vector{params}, Buffer::Kind::uniform);
+    const auto launch = distinct<gpu::Launch>(8);
+    probe_.run(1, launch);
+#define CHECK(binding, Struct) check<gpu::Struct>(binding, #Struct);
+    FOR_STRUCTS(CHECK)
+    expect_equal("uniform Params", probe_.result<gpu::Params>(24, 5)[4], bumped(params));
+    expect_equal("push constants", probe_.result<gpu::Launch>(25, 5)[4], bumped(launch));
+}
+
+}  // namespace
+}  // namespace vkcppm::test

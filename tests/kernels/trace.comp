@@ -1,0 +1,18 @@
+#version 460
+// Nearest hits of rays. launch.offset: steps that a ray may take.
+#include "include/kernel.glsl"
+#include "include/scene.glsl"
+#include "include/traverse.glsl"
+#include "probe.h"
+
+layout(binding = PROBE_INPUT, scalar) readonly buffer InputBlock { RayInput rays[]; };
+layout(binding = PROBE_OUTPUT, scalar) writeonly buffer OutputBlock { RayOutput outputs[]; };
+
+void main() {
+    uint i = invocation();
+    if (i >= launch.count) return;
+    int steps = int(launch.offset);
+    Hit hit;
+    uint found = trace(rays[i].origin, rays[i].direction, steps, hit);
+    outputs[i] = RayOutput(found, hit.t, hit.triangle, hit.barycentric, int(launch.offset) - steps);
+}
