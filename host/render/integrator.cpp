@@ -19,7 +19,6 @@ namespace {
 constexpr std::uint32_t timed_launches = 2048;
 constexpr std::uint32_t workgroup = 64;
 constexpr std::uint32_t photons_per_lane = 16;
-constexpr std::uint32_t scan_blocks = 4096;            // SCAN_BLOCKS of shaders/include/counters.glsl
 constexpr std::uint32_t stride_invocations = 16384;    // of kernels that stride over their input
 constexpr std::uint32_t first_photon_capacity = 10;    // photons a path, before a render knows better
 constexpr double radius_cap = 0.2;                     // of the scene's radius
@@ -88,6 +87,7 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     params_.beta = float(settings.beta);
     params_.cells = std::bit_ceil(std::clamp(16 * settings.photons, 1u << 12, 1u << 20));
     params_.sort_lanes = std::bit_ceil(std::clamp(settings.photons / 128, 64u, 4096u));
+    params_.scan_blocks = std::clamp(params_.cells / 256, workgroup, 4096u);
     const auto key_bits = std::uint32_t(std::countr_zero(params_.cells));
     digits_ = (key_bits + 7) / 8;
     digit_bits_ = (key_bits + digits_ - 1) / digits_;
@@ -124,7 +124,7 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     allocate(BIND_IMAGE, "image", pixels_ * sizeof(gpu::vec3), Kind::storage);
     allocate(BIND_PATHS, "paths", params_.photon_lanes * sizeof(gpu::PathState), Kind::storage);
     const std::uint64_t counters = std::uint64_t(params_.cells) + 1 + params_.photon_lanes + 1 +
-                                   (std::uint64_t(params_.sort_lanes) << digit_bits_) + scan_blocks;
+                                   (std::uint64_t(params_.sort_lanes) << digit_bits_) + params_.scan_blocks;
     allocate(BIND_COUNTERS, "counters", counters * sizeof(std::uint32_t), Kind::word_texels);
     bindings_.bind(BIND_COUNTER_TEXELS, buffer(BIND_COUNTERS));
     allocate_photons();
@@ -209,9 +209,9 @@ void Integrator::build_grid(std::uint32_t i) {
 /// Exclusive scan of counters[offset .. offset + count).
 void Integrator::scan(std::uint32_t i, std::uint32_t offset, std::uint32_t count) {
     const gpu::Launch push{.iteration = i, .round = 0, .last_round = 1, .offset = offset, .count = count};
-    launch("scan_sums", scan_blocks, push);
+    launch("scan_sums", params_.scan_blocks, push);
     launch("scan_blocks", workgroup, push);
-    launch("scan_apply", scan_blocks, push);
+    launch("scan_apply", params_.scan_blocks, push);
 }
 
 void Integrator::launch(const std::string& kernel, std::uint64_t invocations, const gpu::Launch& push) {
@@ -331,6 +331,13 @@ void Integrator::run_kernel(const std::string& kernel, std::uint64_t invocations
     commands_.begin();
     launch(kernel, invocations, push);
     finish();
+}
+
+void Integrator::run_from_grid() {
+    commands_.begin();
+    iterate(completed_, Pass::grid, 0);
+    finish();
+    unblock();
 }
 
 void Integrator::fill(Report& report) const {

@@ -49,6 +49,9 @@ public:
     void set_params(const gpu::Params& params);
     void run_kernel(const std::string& kernel, std::uint64_t invocations, const gpu::Launch& push);
 
+    /// For tests, which bring hits and photons of their own: one iteration from the grid on.
+    void run_from_grid();
+
 private:
     /// Passes of an iteration, in order. The first four can run out of steps and go on in another round.
     enum class Pass { eye, photon, grid, knn, gather, update };

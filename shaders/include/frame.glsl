@@ -1,6 +1,6 @@
 // Directions: octahedral packing and tangent frames. Pure functions.
 
-// Unit vector <-> snorm16x2 on the octahedron (Cigolle et al., JCGT 3(2), 2014). Error at most 4e-5 rad.
+// Unit vector <-> snorm16x2 on the octahedron (Cigolle et al., JCGT 3(2), 2014). Error at most 6.5e-5 rad.
 uint pack_direction(vec3 n) {
     vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
     if (n.z < 0.0) {

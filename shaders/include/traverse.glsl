@@ -90,13 +90,12 @@ uint trace(vec3 origin, vec3 direction, inout int steps, out Hit hit) {
             if (near.w < FAR) { stack_node[top] = child.w; stack_near[top] = near.w; ++top; }
             if (near.z < FAR) { stack_node[top] = child.z; stack_near[top] = near.z; ++top; }
             if (near.y < FAR) { stack_node[top] = child.y; stack_near[top] = near.y; ++top; }
-            if (near.x < FAR) {
-                node = child.x;
-            } else {
-                POP_NODE()
-            }
-            if (node >= BVH_LEAF && node != NO_NODE && leaf == NO_NODE) {
+            node = near.x < FAR ? child.x : NO_NODE;
+            if (node >= BVH_LEAF && leaf == NO_NODE) {
                 leaf = node;
+                node = NO_NODE;
+            }
+            if (node == NO_NODE) {
                 POP_NODE()
             }
         }

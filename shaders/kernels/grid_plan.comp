@@ -1,6 +1,6 @@
 #version 460
 // One invocation: chooses the cell of the grid from the radii in force. Reads the histogram of radii, the number of
-// photons; writes grid. O(bins^2). The cost it minimises is that of the gather, in loop trips: segments of rows
+// photons; writes grid and clears the histogram. O(bins^2). The cost it minimises is that of the gather, in loop trips: segments of rows
 // visited, and photons in the cells visited at the mean density of photons on the scene's surfaces.
 #include "include/kernel.glsl"
 #include "include/grid.glsl"
@@ -41,6 +41,7 @@ void main() {
                 cell = side;
             }
         }
+        for (uint bin = 0u; bin < RADIUS_BINS; ++bin) status.radius_histogram[bin] = 0u;
     }
     vec3 extent = params.bounds_high - params.bounds_low;
     cell = max(cell, max(extent.x, max(extent.y, extent.z)) / 1048576.0);

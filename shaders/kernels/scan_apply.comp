@@ -7,8 +7,8 @@ layout(binding = BIND_COUNTERS, scalar) buffer CounterBlock { uint counters[]; }
 
 void main() {
     uint block = invocation();
-    if (block >= SCAN_BLOCKS || blocked(0u)) return;
-    uint size = (launch.count + SCAN_BLOCKS - 1u) / SCAN_BLOCKS;
+    if (block >= params.scan_blocks || blocked(0u)) return;
+    uint size = (launch.count + params.scan_blocks - 1u) / params.scan_blocks;
     uint begin = launch.offset + min(block * size, launch.count);
     uint end = launch.offset + min((block + 1u) * size, launch.count);
     uint running = counters[SCAN_SUMS + block];

@@ -1,6 +1,6 @@
 #version 460
 // Exclusive scan, step 2 of 3: one work group scans the block sums in place. Any work group size that divides
-// SCAN_BLOCKS. O(SCAN_BLOCKS / size + size).
+// params.scan_blocks. O(params.scan_blocks / size + size).
 #include "include/kernel.glsl"
 #include "include/counters.glsl"
 
@@ -11,7 +11,7 @@ shared uint totals[gl_WorkGroupSize.x];
 void main() {
     bool idle = blocked(0u);  // the same for the whole work group
     uint lane = gl_LocalInvocationIndex;
-    uint size = SCAN_BLOCKS / gl_WorkGroupSize.x;
+    uint size = params.scan_blocks / gl_WorkGroupSize.x;
     uint first = SCAN_SUMS + lane * size;
     uint sum = 0u;
     for (uint i = 0u; i < size; ++i) sum += counters[first + i];

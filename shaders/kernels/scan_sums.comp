@@ -1,6 +1,6 @@
 #version 460
-// Exclusive scan of counters[offset .. offset + length), step 1 of 3: sums of SCAN_BLOCKS consecutive blocks, one
-// invocation a block, without barriers. O(length / SCAN_BLOCKS). length < 2^16 x SCAN_BLOCKS.
+// Exclusive scan of counters[offset .. offset + count), step 1 of 3: sums of params.scan_blocks consecutive blocks, one
+// invocation a block, without barriers. O(count / scan_blocks); count < 2^16 scan_blocks.
 #include "include/kernel.glsl"
 #include "include/counters.glsl"
 
@@ -8,8 +8,8 @@ layout(binding = BIND_COUNTERS, scalar) buffer CounterBlock { uint counters[]; }
 
 void main() {
     uint block = invocation();
-    if (block >= SCAN_BLOCKS || blocked(0u)) return;
-    uint size = (launch.count + SCAN_BLOCKS - 1u) / SCAN_BLOCKS;
+    if (block >= params.scan_blocks || blocked(0u)) return;
+    uint size = (launch.count + params.scan_blocks - 1u) / params.scan_blocks;
     uint begin = launch.offset + min(block * size, launch.count);
     uint end = launch.offset + min((block + 1u) * size, launch.count);
     uint sum = 0u;

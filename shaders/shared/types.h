@@ -247,6 +247,7 @@ struct Params {
     float beta;
     uint cells;            // capacity of the cell table, a power of two
     uint sort_lanes;       // columns of the radix histogram
+    uint scan_blocks;      // a multiple of the work group
     float threshold[MAX_RINGS];          // chi-squared quantile for the disc of the first i + 1 rings
     vec2 sector_edge[MAX_SECTORS / 2];   // unit vectors at 2 pi s / n_s, s < n_s / 2
     vec2 sector_centre[MAX_SECTORS];     // unit vectors at pi (2 s + 1) / n_s

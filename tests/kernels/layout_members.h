@@ -6,7 +6,7 @@
 #define MEMBERS_BVH_NODE X(origin) X(exponents) X(low_x) X(low_y) X(low_z) X(high_x) X(high_y) X(high_z) X(child) X(unused)
 #define MEMBERS_TRIANGLE_GEOMETRY X(v0) X(error) X(e1) X(unused1) X(e2) X(unused2)
 #define MEMBERS_TRIANGLE_SHADING X(normal) X(material)
-#define MEMBERS_SURFACE_MATERIAL X(color) X(kind) X(emission) X(ior) X(double_sided)
+#define MEMBERS_SURFACE_MATERIAL X(color) X(kind) X(emission) X(ior)
 #define MEMBERS_LIGHT X(position) X(kind) X(e1) X(keep) X(e2) X(alias_entry) X(power) X(double_sided)
 #define MEMBERS_PHOTON X(position) X(normal)
 #define MEMBERS_PHOTON_FLUX X(power) X(direction)

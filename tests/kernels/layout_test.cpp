@@ -114,21 +114,21 @@ protected:
 };
 
 #define FOR_STRUCTS(F)                                                                                              \
-    F(6, BvhNode) F(7, TriangleGeometry) F(8, TriangleShading) F(9, SurfaceMaterial) F(10, Light) F(11, Photon)     \
-    F(12, PhotonFlux) F(13, HitPosition) F(14, HitWeight) F(15, HitEmission) F(16, Gathered) F(17, PixelState)      \
-    F(18, Aovs) F(19, Film) F(20, PathState) F(21, Cursor) F(22, Grid) F(23, Status) F(24, Params) F(25, Launch)
+    F(0, BvhNode) F(1, TriangleGeometry) F(2, TriangleShading) F(3, SurfaceMaterial) F(4, Light) F(5, Photon)     \
+    F(6, PhotonFlux) F(7, HitPosition) F(8, HitWeight) F(9, HitEmission) F(10, Gathered) F(11, PixelState)      \
+    F(12, Aovs) F(13, Film) F(14, PathState) F(15, Cursor) F(16, Grid) F(17, Status) F(18, Params) F(19, Launch)
 
 TEST_F(Layout, EveryMemberStandsWhereTheHostPutsIt) {
-#define UPLOAD(binding, Struct) upload<gpu::Struct>(binding);
+#define UPLOAD(index, Struct) upload<gpu::Struct>(BIND_FIRST_STORAGE + index);
     FOR_STRUCTS(UPLOAD)
     const auto params = distinct<gpu::Params>(7);
     probe_.input(BIND_PARAMS, std::vector{params}, Buffer::Kind::uniform);
     const auto launch = distinct<gpu::Launch>(8);
     probe_.run(1, launch);
-#define CHECK(binding, Struct) check<gpu::Struct>(binding, #Struct);
+#define CHECK(index, Struct) check<gpu::Struct>(BIND_FIRST_STORAGE + index, #Struct);
     FOR_STRUCTS(CHECK)
-    expect_equal("uniform Params", probe_.result<gpu::Params>(24, 5)[4], bumped(params));
-    expect_equal("push constants", probe_.result<gpu::Launch>(25, 5)[4], bumped(launch));
+    expect_equal("uniform Params", probe_.result<gpu::Params>(BIND_FIRST_STORAGE + 18, 5)[4], bumped(params));
+    expect_equal("push constants", probe_.result<gpu::Launch>(BIND_FIRST_STORAGE + 19, 5)[4], bumped(launch));
 }
 
 }  // namespace

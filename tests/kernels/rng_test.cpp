@@ -57,7 +57,8 @@ std::vector<std::uint64_t> bins_of_pairs(std::size_t count, Pair pair) {
 }
 
 TEST_F(Rng, GivesTheBitsOfThePaper) {
-    std::mt19937 random(1);
+    std::mt19937 engine(1);
+    const auto random = [&] { return std::uint32_t(engine()); };
     std::vector<gpu::RngKey> keys(samples);
     for (std::size_t i = 0; i < keys.size(); ++i) {
         // Full range for half of the keys, the small numbers of a real render for the others.

@@ -15,7 +15,7 @@ void main() {
     uint i = invocation();
     if (i >= launch.count) return;
     ScatterInput s = inputs[i];
-    SurfaceMaterial material = materials[s.material];
+    SurfaceMaterial material = material_at(s.material);
     float cosine = min(1.0, -dot(s.direction, s.normal));
     ScatterOutput result;
     result.reflectance =

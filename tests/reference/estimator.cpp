@@ -4,8 +4,10 @@
 #include <cassert>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
@@ -40,7 +42,7 @@ struct Moments {
     std::vector<double> x, y;
 };
 
-Moments cell_moments(const Cells& cells) {
+Moments integrate_moments(const Cells& cells) {
     using Rule = boost::math::quadrature::gauss<double, 20>;
     Moments moments;
     for (std::uint32_t ring = 0; ring < cells.rings; ++ring) {
@@ -59,6 +61,14 @@ Moments cell_moments(const Cells& cells) {
         }
     }
     return moments;
+}
+
+/// The quadrature is done once a thread and shape: 10^5 states share a few shapes.
+const Moments& cell_moments(const Cells& cells) {
+    thread_local std::map<std::pair<std::uint32_t, std::uint32_t>, Moments> known;
+    const auto [place, fresh] = known.try_emplace({cells.rings, cells.sectors});
+    if (fresh) place->second = integrate_moments(cells);
+    return place->second;
 }
 
 }  // namespace
@@ -90,7 +100,7 @@ double constant_p_value(std::span<const std::uint32_t> tallies, const Cells& cel
 }
 
 std::vector<double> linear_cell_probabilities(const Cells& cells, double k1, double k2) {
-    const Moments moments = cell_moments(cells);
+    const Moments& moments = cell_moments(cells);
     std::vector<double> probabilities;
     for (std::size_t i = 0; i < moments.x.size(); ++i) {
         probabilities.push_back(k1 * moments.x[i] + k2 * moments.y[i] + 1.0 / moments.x.size());
@@ -105,7 +115,7 @@ double linear_p_value(std::span<const std::uint32_t> tallies, const Cells& cells
         return 1.0;
     }
     // Least squares of O/S against p: the two regressors are orthogonal to each other and to the constant.
-    const Moments moments = cell_moments(cells);
+    const Moments& moments = cell_moments(cells);
     const auto slope = [&](const std::vector<double>& regressor) {
         return std::inner_product(disc.begin(), disc.end(), regressor.begin(), 0.0) /
                (total * std::inner_product(regressor.begin(), regressor.end(), regressor.begin(), 0.0));

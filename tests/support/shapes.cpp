@@ -1,5 +1,6 @@
 #include "support/shapes.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -128,7 +129,9 @@ void add_sphere(Scene& scene, const glm::dvec3& centre, double radius, int level
         std::vector<std::array<std::size_t, 3>> finer;
         for (const auto& [i, j, k] : faces) {
             const std::size_t a = middle(i, j), b = middle(j, k), c = middle(k, i);
-            for (const auto& face : {std::array{i, a, c}, {a, j, b}, {c, b, k}, {a, b, c}}) finer.push_back(face);
+            for (const auto& face : {std::array{i, a, c}, std::array{a, j, b}, std::array{c, b, k}, std::array{a, b, c}}) {
+                finer.push_back(face);
+            }
         }
         faces = finer;
     }

@@ -1,0 +1,37 @@
+// The Cornell box with a mirror and a glass sphere against its reference by bidirectional path tracing.
+
+#include "core/metrics.h"
+#include "io/exr.h"
+#include "support/rig.h"
+#include "support/scenes.h"
+
+namespace vkcppm::test {
+namespace {
+
+struct Case {
+    const char* estimator;
+    double limit;  // of relMSE without the worst 0.1 % of pixels
+};
+
+class CornellGlass : public GpuTest, public testing::WithParamInterface<Case> {};
+
+TEST_P(CornellGlass, SixtyFourIterations) {
+    const auto scene = shared_file("cornell_glass.glb");
+    const auto reference = shared_file("cornell_glass_ref.exr");
+    if (!scene || !reference) GTEST_SKIP() << "the shared scene cornell_glass.glb and its reference are not there";
+    Settings settings;
+    settings.estimator = GetParam().estimator;
+    settings.size = Extent{256, 256};
+    Rig run(load_gltf(*scene), settings);
+    run.integrator.run(64);
+    const Comparison found = compare(run.integrator.resolve(), read_exr(*reference));
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found.mean_ratio[c], 1.0, 0.007) << "channel " << c;
+    EXPECT_LE(found.trimmed_relative_mse, GetParam().limit);
+    RecordProperty("relmse_trim", std::to_string(found.trimmed_relative_mse));
+}
+
+INSTANTIATE_TEST_SUITE_P(Peers, CornellGlass, testing::Values(Case{"cppm", 0.0035}, Case{"sppm", 0.0072}),
+                         [](const auto& info) { return std::string(info.param.estimator); });
+
+}  // namespace
+}  // namespace vkcppm::test

@@ -1,0 +1,288 @@
+// Starts of light paths: each light as often as its share of the power, in the directions and from the places where
+// it emits; all from the scene's own numbers, not from the alias table.
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "kernels/probe.h"
+#include "render/flatten.h"
+#include "support/gpu.h"
+#include "support/shapes.h"
+#include "support/statistics.h"
+
+namespace vkcppm::test {
+namespace {
+
+using std::numbers::pi;
+
+constexpr std::uint32_t emission_words[] = {
+#include "emission.spv.inc"
+};
+
+constexpr std::size_t samples = 400000;
+
+/// A light as the scene states it: what tells its paths from those of others, and its flux.
+struct Source {
+    std::string name;
+    glm::dvec3 flux;                      // W
+    const PunctualLight* light = nullptr; // none: a triangle
+    std::size_t triangle = 0;
+    bool double_sided = false;
+    std::vector<gpu::EmitOutput> starts;  // filled by the test, frame units
+};
+
+Scene lights_of_every_kind() {
+    Scene scene;
+    const auto floor = add_diffuse(scene, glm::vec3(0.5f));
+    add_quad(scene, {-2, -1, -2}, {0, 0, 4}, {4, 0, 0}, floor);
+    // Colours differ in hue, so that the power of a path tells its light.
+    add_triangle(scene, {-1, 0, -1}, {0, 0.5, -1}, {-1, 1, 0}, add_emitter(scene, {9, 1, 1}));
+    add_triangle(scene, {1, 0, 1}, {1.2, 0.1, 1}, {1, 0.4, 1.3}, add_emitter(scene, {1, 9, 1}, true));
+    add_triangle(scene, {0, 1, 0}, {0, 1, 1.5}, {1.5, 1, 0}, add_emitter(scene, {1, 1, 9}));
+    const auto add = [&](PunctualLight::Kind kind, const glm::vec3& intensity, const glm::dvec3& position,
+                         const glm::dvec3& direction, double inner, double outer) {
+        PunctualLight light;
+        light.kind = kind;
+        light.intensity = intensity;
+        light.position = position;
+        light.direction = glm::normalize(direction);
+        light.inner_cone = inner;
+        light.outer_cone = outer;
+        scene.lights.push_back(light);
+    };
+    using Kind = PunctualLight::Kind;
+    add(Kind::point, {0.9f, 0.9f, 0.1f}, {0.5, 0.5, 0.5}, {0, 0, -1}, 0, 0);
+    add(Kind::point, {0.01f, 0.2f, 0.2f}, {-0.5, 0.5, 0.5}, {0, 0, -1}, 0, 0);
+    add(Kind::spot, {5.0f, 0.5f, 5.0f}, {0, 0.9, -0.5}, {0.3, -1.0, 0.2}, 0.0, pi / 4.0);
+    add(Kind::spot, {60.0f, 20.0f, 10.0f}, {0, 0.2, -0.5}, {-1.0, 0.5, -0.2}, 0.2, 0.25);
+    add(Kind::directional, {0.1f, 0.5f, 0.9f}, {0, 0, 0}, {0.2, -1.0, 0.4}, 0, 0);
+    add(Kind::directional, {0.2f, 0.05f, 0.01f}, {0, 0, 0}, {1.0, -0.1, 0.0}, 0, 0);
+    return scene;
+}
+
+/// Corner c of a triangle in the frame.
+glm::dvec3 corner(const Scene& scene, const FlatScene& flat, std::size_t triangle, int c) {
+    return flat.frame.point(scene.positions[scene.triangles[triangle].vertex[c]]);
+}
+
+std::vector<Source> sources_of(const Scene& scene, const FlatScene& flat) {
+    std::vector<Source> sources;
+    for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
+        const Material& material = scene.materials[scene.triangles[i].material];
+        if (material.emission == glm::vec3(0.0f)) continue;
+        const auto& v = scene.triangles[i].vertex;
+        const double area = 0.5 * glm::length(glm::cross(scene.positions[v[1]] - scene.positions[v[0]],
+                                                         scene.positions[v[2]] - scene.positions[v[0]]));
+        const double sides = material.double_sided ? 2.0 : 1.0;
+        sources.push_back({fmt::format("triangle {}", i), pi * area * sides * glm::dvec3(material.emission), nullptr, i,
+                           material.double_sided, {}});
+    }
+    // The disc of a directional light covers the scene's bounding sphere about the frame's centre.
+    double radius = 0.0;
+    for (const auto& p : scene.positions) radius = std::max(radius, glm::distance(p, flat.frame.centre));
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+        const PunctualLight& light = scene.lights[i];
+        double factor = 4.0 * pi;
+        if (light.kind == PunctualLight::Kind::spot) {
+            const double inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
+            factor = 2.0 * pi * ((1.0 - inner) + (inner - outer) / 3.0);
+        } else if (light.kind == PunctualLight::Kind::directional) {
+            factor = pi * std::pow(1.001 * radius, 2);
+        }
+        sources.push_back({fmt::format("light {}", i), factor * glm::dvec3(light.intensity), &light, 0, false, {}});
+    }
+    return sources;
+}
+
+double mean(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
+
+/// Cosine of the direction to `axis` and azimuth about it, in bins; any frame will do, azimuths are uniform.
+std::vector<std::uint64_t> direction_bins(const Source& source, const glm::dvec3& axis, double low, double high) {
+    const glm::dvec3 side = glm::normalize(glm::cross(axis, std::abs(axis.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
+    const glm::dvec3 other = glm::cross(axis, side);
+    std::vector<std::uint64_t> bins(10 * 8);
+    for (const auto& start : source.starts) {
+        const glm::dvec3 d(start.direction);
+        const double turn = std::atan2(glm::dot(d, other), glm::dot(d, side)) / (2.0 * pi) + 0.5;
+        const double place = (glm::dot(d, axis) - low) / (high - low);
+        ++bins[std::size_t(std::clamp(10.0 * place, 0.0, 9.0)) * 8 + std::min<std::size_t>(7, std::size_t(8.0 * turn))];
+    }
+    return bins;
+}
+
+/// Of ten bins of the cosine over [low, high], times eight azimuths, for the cumulative distribution `below`.
+template <typename Cumulative>
+std::vector<double> direction_density(double low, double high, Cumulative below) {
+    std::vector<double> density;
+    for (int i = 0; i < 10; ++i) {
+        const double p = below(low + (high - low) * (i + 1) / 10.0) - below(low + (high - low) * i / 10.0);
+        density.insert(density.end(), 8, p / 8.0);
+    }
+    return density;
+}
+
+class Emission : public GpuTest {
+protected:
+    std::vector<gpu::EmitOutput> emit(const FlatScene& flat, const std::vector<gpu::EmitInput>& inputs) {
+        gpu::Params params{};
+        params.light_count = std::uint32_t(flat.lights.size());
+        probe_.input(BIND_PARAMS, std::vector{params}, Buffer::Kind::uniform);
+        probe_.input(BIND_LIGHTS, flat.lights, Buffer::Kind::uint_texels);
+        probe_.input(PROBE_INPUT, inputs);
+        probe_.output<gpu::EmitOutput>(PROBE_OUTPUT, inputs.size());
+        probe_.run(inputs.size(),
+                   {.iteration = 0, .round = 0, .last_round = 0, .offset = 0, .count = std::uint32_t(inputs.size())});
+        return probe_.result<gpu::EmitOutput>(PROBE_OUTPUT, inputs.size());
+    }
+
+    Probe probe_{"emission", emission_words};
+};
+
+TEST_F(Emission, LightsEmitTheirShareWhereAndWhereTo) {
+    const Scene scene = lights_of_every_kind();
+    const FlatScene flat = flatten(scene);
+    std::vector<Source> sources = sources_of(scene, flat);
+    ASSERT_EQ(flat.lights.size(), sources.size());
+    glm::dvec3 total(0.0);
+    for (const Source& source : sources) total += source.flux;
+    const double scale2 = flat.frame.scale * flat.frame.scale;
+
+    std::mt19937 random(6);
+    const auto next = [&] { return float(random() >> 8) / 16777216.0f; };
+    std::vector<gpu::EmitInput> inputs(samples);
+    for (auto& input : inputs) {
+        for (int c = 0; c < 4; ++c) input.u[c] = next();
+        for (int c = 0; c < 4; ++c) input.v[c] = next();
+    }
+    const auto starts = emit(flat, inputs);
+
+    // A path of a light carries its flux over its probability.
+    glm::dvec3 sum(0.0), squares(0.0);
+    for (const auto& start : starts) {
+        const glm::dvec3 power = glm::dvec3(start.power) / scale2;
+        sum += power;
+        squares += power * power;
+        bool known = false;
+        for (Source& source : sources) {
+            const glm::dvec3 expected = source.flux * (mean(total) / mean(source.flux));
+            if (glm::distance(power, expected) > 2e-6 * glm::length(expected)) continue;
+            known = true;
+            source.starts.push_back(start);
+        }
+        ASSERT_TRUE(known) << "power (" << power.x << ", " << power.y << ", " << power.z << ") W is that of no light";
+        ASSERT_NEAR(glm::length(glm::dvec3(start.direction)), 1.0, 1e-6);
+    }
+    const double level = sidak(1e-4, 1 + 3 * sources.size());
+    std::vector<std::uint64_t> counts;
+    std::vector<double> shares;
+    for (const Source& source : sources) {
+        counts.push_back(source.starts.size());
+        shares.push_back(mean(source.flux) / mean(total));
+    }
+    expect_density("lights in proportion to power", chi_squared(counts, shares), level);
+    for (int c = 0; c < 3; ++c) {
+        const double average = sum[c] / samples;
+        const double error = std::sqrt((squares[c] / samples - average * average) / samples);
+        EXPECT_NEAR(average, total[c], 4.0 * error) << "total power, channel " << c << ", standard error " << error;
+    }
+
+    for (const Source& source : sources) {
+        SCOPED_TRACE(source.name);
+        ASSERT_GT(source.starts.size(), 1000u);
+        if (!source.light) {
+            const glm::dvec3 v0 = corner(scene, flat, source.triangle, 0);
+            const glm::dvec3 e1 = corner(scene, flat, source.triangle, 1) - v0, e2 = corner(scene, flat, source.triangle, 2) - v0;
+            const glm::dvec3 normal = glm::cross(e1, e2), unit = glm::normalize(normal);
+            std::vector<std::uint64_t> places(16);
+            Source turned = source;
+            std::vector<std::uint64_t> sides(2);
+            for (auto& start : turned.starts) {
+                const double cosine = glm::dot(glm::dvec3(start.direction), unit);
+                ++sides[cosine < 0.0 ? 1 : 0];
+                const glm::dvec3 offset = glm::dvec3(start.origin) - v0;
+                const double height = glm::dot(offset, unit);
+                ASSERT_LT(std::abs(height), 5e-6);
+                ASSERT_GT(height * cosine, 0.0) << "the path starts behind its own emitter";
+                const double b = glm::dot(glm::cross(offset, e2), normal) / glm::dot(normal, normal);
+                const double c = glm::dot(glm::cross(e1, offset), normal) / glm::dot(normal, normal);
+                ASSERT_TRUE(b > -1e-5 && c > -1e-5 && b + c < 1.0 + 1e-5) << b << " " << c;
+                // Uniform on the triangle: 1 - (1 - b)^2 and c / (1 - b) are uniform and independent.
+                const double u = 1.0 - (1.0 - b) * (1.0 - b), v = c / std::max(1e-9, 1.0 - b);
+                ++places[std::size_t(std::clamp(4.0 * u, 0.0, 3.0)) * 4 + std::size_t(std::clamp(4.0 * v, 0.0, 3.0))];
+                if (cosine < 0.0) start.direction = glm::vec3(glm::dvec3(start.direction) - 2.0 * cosine * unit);
+            }
+            expect_density("places", chi_squared_uniform(places), level);
+            expect_density("directions", chi_squared(direction_bins(turned, unit, 0.0, 1.0), direction_density(0.0, 1.0, [](double c) { return c * c; })), level);
+            if (source.double_sided) {
+                expect_density("sides", chi_squared_uniform(sides), level);
+            } else {
+                EXPECT_EQ(sides[1], 0u) << "emitted behind a one-sided triangle";
+            }
+            continue;
+        }
+        const PunctualLight& light = *source.light;
+        const glm::dvec3 position = flat.frame.point(light.position);
+        if (light.kind == PunctualLight::Kind::directional) {
+            double radius = 0.0;
+            for (const auto& p : scene.positions) radius = std::max(radius, flat.frame.length(glm::distance(p, flat.frame.centre)));
+            std::vector<std::uint64_t> rings(8);
+            for (const auto& start : source.starts) {
+                ASSERT_LT(glm::distance(glm::dvec3(start.direction), light.direction), 1e-6);
+                const double along = glm::dot(glm::dvec3(start.origin), light.direction);
+                const double away = glm::distance(glm::dvec3(start.origin), along * light.direction);
+                ASSERT_LT(along, -radius) << "the disc cuts the scene";
+                ASSERT_LT(away, 1.0011 * radius);
+                ++rings[std::min<std::size_t>(7, std::size_t(8.0 * std::pow(away / (1.001 * radius), 2)))];
+            }
+            expect_density("rings of the disc", chi_squared_uniform(rings), level);
+            continue;
+        }
+        double low = -1.0;
+        std::function<double(double)> below = [](double c) { return 0.5 * (c + 1.0); };
+        if (light.kind == PunctualLight::Kind::spot) {
+            low = std::cos(light.outer_cone);
+            const double inner = std::cos(light.inner_cone), third = (inner - low) / 3.0, whole = third + 1.0 - inner;
+            below = [=](double c) {
+                return (third * std::pow(std::min(1.0, (c - low) / (inner - low)), 3) + std::max(0.0, c - inner)) / whole;
+            };
+        }
+        for (const auto& start : source.starts) {
+            ASSERT_LT(glm::distance(glm::dvec3(start.origin), position), 1e-6);
+            if (light.kind == PunctualLight::Kind::spot) {
+                ASSERT_GT(glm::dot(glm::dvec3(start.direction), light.direction), low - 1e-6) << "outside the cone";
+            }
+        }
+        const glm::dvec3 axis = light.kind == PunctualLight::Kind::point ? glm::dvec3(0.6, 0.0, 0.8) : light.direction;
+        expect_density("directions", chi_squared(direction_bins(source, axis, low, 1.0), direction_density(low, 1.0, below)), level);
+    }
+}
+
+TEST_F(Emission, CornersOfTheHypercubeGiveFiniteStarts) {
+    const FlatScene flat = flatten(lights_of_every_kind());
+    const float last = 1.0f - 1.0f / 16777216.0f;
+    std::vector<gpu::EmitInput> inputs;
+    for (std::size_t light = 0; light < flat.lights.size(); ++light) {
+        for (std::uint32_t bits = 0; bits < 128; ++bits) {
+            const auto end = [&](int bit) { return (bits >> bit & 1) ? last : 0.0f; };
+            inputs.push_back({{(float(light) + 0.5f) / float(flat.lights.size()), end(0), end(1), end(2)},
+                              {end(3), end(4), end(5), end(6)}});
+        }
+    }
+    inputs.push_back({{last, last, last, last}, {last, last, last, last}});
+    for (const auto& start : emit(flat, inputs)) {
+        EXPECT_NEAR(glm::length(glm::dvec3(start.direction)), 1.0, 1e-6);
+        EXPECT_LT(glm::length(start.origin), 10.0f);
+        EXPECT_GT(mean(start.power), 0.0);
+    }
+}
+
+}  // namespace
+}  // namespace vkcppm::test

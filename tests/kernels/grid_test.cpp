@@ -1,0 +1,162 @@
+// The photons in the order of their cells: scan, radix sort and cell starts, for dense rows and for the hash.
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "support/gpu.h"
+#include "support/rig.h"
+#include "support/shapes.h"
+
+namespace vkcppm::test {
+namespace {
+
+Settings small(std::uint32_t photons) {
+    Settings settings;
+    settings.size = Extent{32, 32};
+    settings.photons = photons;
+    return settings;
+}
+
+/// The cell of a position, its box padded by none: out of range cells belong to the nearest.
+glm::ivec3 cell_of(const gpu::Grid& grid, const glm::vec3& position) {
+    const glm::vec3 place = (position - grid.origin) * grid.inverse_cell;
+    glm::ivec3 cell;
+    for (int axis = 0; axis < 3; ++axis) {
+        cell[axis] = std::clamp(int(std::floor(place[axis])), 0, int(grid.dims[axis]) - 1);
+    }
+    return cell;
+}
+
+/// Rows along x one after the other; or runs of eight cells along x hashed as by Teschner et al. 2003.
+std::uint32_t entry_of(const gpu::Grid& grid, const glm::ivec3& cell) {
+    const glm::uvec3 c(cell);
+    if (grid.dims.w == 0) return (c.z * grid.dims.y + c.y) * grid.dims.x + c.x;
+    std::uint32_t hash = (c.x / 8 * 73856093u) ^ (c.y * 19349663u) ^ (c.z * 83492791u);
+    hash ^= hash >> 15;
+    return ((hash * 8) & grid.dims.w) + c.x % 8;
+}
+
+class GridOrder : public GpuTest {
+protected:
+    /// Runs an iteration with a table of `cells` entries (0: the default) and compares everything with the host.
+    void check(Rig& rig, std::uint32_t cells, bool hashed) {
+        gpu::Params params = rig.integrator.params();
+        if (cells > 0) params.cells = cells;
+        rig.integrator.set_params(params);
+        rig.integrator.run(1);
+        params = rig.integrator.params();
+        const gpu::Grid grid = rig.integrator.buffer(BIND_GRID).download_value<gpu::Grid>();
+        ASSERT_EQ(grid.dims.w != 0, hashed) << grid.dims.x << " x " << grid.dims.y << " x " << grid.dims.z << " cells of "
+                                            << grid.cell << ", table of " << params.cells;
+        if (hashed) {
+            EXPECT_EQ(grid.dims.w, params.cells - 1);
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+            EXPECT_GE(grid.origin[axis] + float(grid.dims[axis]) * grid.cell, params.bounds_high[axis]) << "axis " << axis;
+        }
+
+        // As stored: lane by lane, which is path by path and bounce by bounce.
+        const auto paths = rig.all<gpu::PathState>(BIND_PATHS);
+        const auto photons = rig.all<gpu::Photon>(BIND_PHOTONS);
+        const auto fluxes = rig.all<gpu::PhotonFlux>(BIND_PHOTON_FLUX);
+        struct Entry {
+            std::uint32_t cell;
+            std::size_t slot;
+        };
+        std::vector<Entry> entries;
+        for (std::uint32_t lane = 0; lane < params.photon_lanes; ++lane) {
+            for (std::uint32_t i = 0; i < paths[lane].stored; ++i) {
+                const std::size_t slot = std::size_t(lane) * params.photon_capacity + i;
+                entries.push_back({entry_of(grid, cell_of(grid, photons[slot].position)), slot});
+            }
+        }
+        ASSERT_GT(entries.size(), rig.settings.photons);
+        std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.cell < b.cell; });
+
+        const auto sorted = rig.all<gpu::Photon>(BIND_SORTED);
+        const auto sorted_flux = rig.all<gpu::PhotonFlux>(BIND_SORTED_FLUX);
+        for (std::size_t i = 0; i < entries.size(); ++i) {
+            ASSERT_EQ(std::memcmp(&sorted[i], &photons[entries[i].slot], sizeof(gpu::Photon)), 0)
+                << "place " << i << " of " << entries.size() << ", slot " << entries[i].slot << ", cell " << entries[i].cell;
+            ASSERT_EQ(std::memcmp(&sorted_flux[i], &fluxes[entries[i].slot], sizeof(gpu::PhotonFlux)), 0)
+                << "place " << i << ", slot " << entries[i].slot;
+        }
+        const auto counters = rig.all<std::uint32_t>(BIND_COUNTERS);
+        std::size_t next = 0, occupied = 0;
+        for (std::uint32_t cell = 0; cell < params.cells; ++cell) {
+            ASSERT_EQ(counters[cell], next) << "start of cell " << cell << " of " << params.cells;
+            const std::size_t begin = next;
+            while (next < entries.size() && entries[next].cell == cell) ++next;
+            occupied += next > begin ? 1 : 0;
+        }
+        ASSERT_EQ(counters[params.cells], entries.size()) << "the end of the last cell";
+        EXPECT_GT(occupied, 30u) << "too few cells to mean anything";
+    }
+};
+
+TEST_F(GridOrder, DenseRowsHoldThePhotonsInOrder) {
+    Rig rig(room(), small(4096));
+    check(rig, 0, false);
+}
+
+TEST_F(GridOrder, HashedRunsHoldThePhotonsInOrder) {
+    for (const std::uint32_t cells : {64u, 1024u}) {
+        SCOPED_TRACE(cells);
+        Rig rig(room(), small(4096));
+        check(rig, cells, true);
+    }
+}
+
+TEST_F(GridOrder, ManyPhotonsAndManyDigits) {
+    Rig rig(room(), small(40000));
+    check(rig, 0, false);
+    ASSERT_NO_FATAL_FAILURE();
+    Rig one(bare_room(0.5f), small(100));
+    check(one, 0, false);
+}
+
+TEST_F(GridOrder, PlansFromTheRadiiInForce) {
+    Rig rig(room(), small(4096));
+    rig.integrator.run(2);  // plans before iterations 0, 1 and 2: the radii were counted after iteration 1
+    std::uint32_t diffuse = 0;
+    for (const auto& hit : rig.all<gpu::HitPosition>(BIND_HIT_POSITION)) diffuse += (hit.state & HIT_MASK) == HIT_DIFFUSE ? 1 : 0;
+    const gpu::Status status = rig.status();
+    std::uint32_t counted = 0;
+    for (const std::uint32_t bin : status.radius_histogram) counted += bin;
+    EXPECT_EQ(counted, diffuse) << "radii in the histogram, pixels that see a diffuse surface";
+}
+
+TEST_F(GridOrder, ExclusiveScanOfAnyRange) {
+    Rig rig(bare_room(0.5f), small(4096));
+    const std::size_t words = rig.integrator.buffer(BIND_COUNTERS).bytes() / 4;
+    const gpu::Params& params = rig.integrator.params();
+    std::mt19937 random(14);
+    const std::uint32_t limit = params.cells + 1 + params.photon_lanes + 1 + params.sort_lanes * 64;
+    for (const auto& [offset, count] : {std::pair(0u, 1u), std::pair(0u, 4096u), std::pair(5u, 4097u), std::pair(17u, 100u),
+                                        std::pair(0u, limit), std::pair(1u, 65535u)}) {
+        std::vector<std::uint32_t> values(words);
+        for (auto& value : values) value = random() % 50000u;
+        rig.integrator.buffer(BIND_COUNTERS).upload(values);
+        const gpu::Launch launch{.iteration = 0, .round = 0, .last_round = 1, .offset = offset, .count = count};
+        rig.integrator.run_kernel("scan_sums", 4096, launch);
+        rig.integrator.run_kernel("scan_blocks", 64, launch);
+        rig.integrator.run_kernel("scan_apply", 4096, launch);
+        const auto scanned = rig.all<std::uint32_t>(BIND_COUNTERS);
+        std::uint32_t running = 0;
+        for (std::uint32_t i = 0; i < limit; ++i) {
+            const bool inside = i >= offset && i < offset + count;
+            ASSERT_EQ(scanned[i], inside ? running : values[i]) << "word " << i << " of a scan of " << count << " from " << offset;
+            if (inside) running += values[i];
+        }
+    }
+}
+
+}  // namespace
+}  // namespace vkcppm::test
