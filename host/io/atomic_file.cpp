@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include "core/error.h"
@@ -46,7 +47,7 @@ fs::path replaceable(const fs::path& file) {
 class Part {
 public:
     explicit Part(const fs::path& file) : file_(file), target_(replaceable(file)), part_(target_) {
-        part_ += "." + std::to_string(::getpid()) + ".part";
+        part_ += fmt::format(".{}.part", ::getpid());
         descriptor_ = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
         if (descriptor_ < 0) {
             fail_with_errno(file_);

@@ -23,7 +23,7 @@ def furnace():
     document.add_camera(camera)
     expected = Expectation(
         "L = Le / (1 - rho), Le = (0.35, 0.3, 0.3), rho = (0.3, 0.5, 0.7), in every pixel",
-        camera, lambda direction: [e / (1.0 - r) for e, r in zip(radiance, rho)], iterations=192, photons=65536)
+        camera, lambda direction: [e / (1.0 - r) for e, r in zip(radiance, rho)], iterations=128, photons=16384)
     quadrants(expected, camera)
     return document, expected
 

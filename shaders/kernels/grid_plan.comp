@@ -1,7 +1,7 @@
 #version 460
 // One invocation: chooses the cell of the grid from the radii in force. Reads the histogram of radii, the number of
-// photons; writes grid and clears the histogram. O(bins^2). The cost it minimises is that of the gather, in loop trips: segments of rows
-// visited, and photons in the cells visited at the mean density of photons on the scene's surfaces.
+// photons; writes grid and clears the histogram. O(bins^2). The cost it minimises is that of the gather, in loop
+// trips: segments of rows visited, and photons in the cells visited at the mean density of photons on the surfaces.
 #include "include/kernel.glsl"
 #include "include/grid.glsl"
 #include "include/counters.glsl"

@@ -42,7 +42,7 @@ TEST_P(Slope, OfTheMeanSquaredErrorOverIterations) {
     settings.estimator = GetParam().estimator;
     settings.size = Extent{48, 48};
     settings.photons = 65536;
-    Rig run(scene, settings);
+    Rig run(scene, settings, plain_device());
     // rho/pi E cos(theta), the green channel of scenes/directional_plane.expect.json.
     const double truth = 0.3325667;
     std::vector<double> iterations, errors;

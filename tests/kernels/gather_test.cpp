@@ -112,6 +112,19 @@ protected:
         const bool hashed = rig.integrator.buffer(BIND_GRID).download_value<gpu::Grid>().dims.w != 0;
         ASSERT_EQ(hashed, cells > 0);
     }
+
+    /// Gathers in iteration 1 with whatever stands in the buffers, in as many rounds as it takes.
+    static void gather(Rig& rig) {
+        for (std::uint32_t round = 0; round < 100; ++round) {
+            gpu::Status status = rig.status();
+            status.blocked = 0;
+            rig.integrator.buffer(BIND_STATUS).upload_value(status);
+            rig.integrator.run_kernel("gather", rig.pixels(),
+                                      {.iteration = 1, .round = round, .last_round = 1, .offset = 0, .count = 0});
+            if (rig.status().blocked == 0) return;
+        }
+        FAIL() << "the gather does not end";
+    }
 };
 
 TEST_F(Gather, StartingRadiusIsTheDistanceOfTheKthNearestPhoton) {
@@ -121,8 +134,8 @@ TEST_F(Gather, StartingRadiusIsTheDistanceOfTheKthNearestPhoton) {
         // The first iteration of cppm changes no radius: k - 1 photons are fewer than a batch.
         Rig rig(room(), settings_of("cppm", 1500));
         gpu::Params params = rig.integrator.params();
-        params.footprint_cap = 8.0f;  // so that some pixels find fewer than k
-        params.radius_floor *= 0.8f;
+        params.footprint_cap = 4.0f;  // so that some pixels find fewer than k
+        params.radius_floor *= 0.5f;
         rig.integrator.set_params(params);
         run(rig, cells);
         const auto hits = rig.all<gpu::HitPosition>(BIND_HIT_POSITION);
@@ -211,8 +224,7 @@ TEST_F(Gather, SumsCountsAndTalliesAreThoseOfAllPhotons) {
         rig.integrator.buffer(BIND_PIXELS).upload(states);
         const std::uint32_t bins = c.rings * c.sectors;
         rig.integrator.buffer(BIND_TALLY).upload(std::vector<std::uint32_t>(bins * rig.pixels()));
-        rig.integrator.run_kernel("gather", rig.pixels(), {.iteration = 1, .round = 0, .last_round = 1, .offset = 0, .count = 0});
-        ASSERT_EQ(rig.status().blocked, 0u) << "the test is to stay within the step budget";
+        gather(rig);
 
         const auto hits = rig.all<gpu::HitPosition>(BIND_HIT_POSITION);
         const auto weights = rig.all<gpu::HitWeight>(BIND_HIT_WEIGHT);
@@ -284,7 +296,7 @@ TEST_F(Gather, AFoldedTallyAddsOppositeSectors) {
         rig->integrator.buffer(BIND_PIXELS).upload(random_radii(*rig, 16));
         const std::size_t words = rig->integrator.buffer(BIND_TALLY).bytes() / 4;
         rig->integrator.buffer(BIND_TALLY).upload(std::vector<std::uint32_t>(words));
-        rig->integrator.run_kernel("gather", rig->pixels(), {.iteration = 1, .round = 0, .last_round = 1, .offset = 0, .count = 0});
+        gather(*rig);
     }
     const auto whole = plain.all<std::uint32_t>(BIND_TALLY), halves = folded.all<std::uint32_t>(BIND_TALLY);
     const std::size_t p = plain.pixels();

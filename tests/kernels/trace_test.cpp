@@ -8,7 +8,11 @@
 #include <random>
 #include <vector>
 
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -130,9 +134,13 @@ public:
         query.ray.tfar = std::numeric_limits<float>::infinity();
         query.ray.mask = 0xffffffffu;
         query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if RTC_VERSION_MAJOR >= 4
+        rtcIntersect1(scene_, &query);
+#else
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
         rtcIntersect1(scene_, &context, &query);
+#endif
         if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
         return {true, query.ray.tfar, query.hit.primID};
     }

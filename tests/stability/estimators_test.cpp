@@ -48,7 +48,7 @@ TEST_P(Estimators, SameSeedSameBits) {
 // The rule of appm alone may let a radius grow: it follows an estimate of the curvature.
 TEST_P(Estimators, TenThousandIterations) {
     const Scene scene = project_scene("caustic");
-    Rig run(scene, settings(12, 256));
+    Rig run(scene, settings(12, 256), plain_device());
     std::vector<gpu::PixelState> before;
     for (int step = 0; step < 100; ++step) {
         run.integrator.run(100);

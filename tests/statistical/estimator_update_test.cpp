@@ -1,7 +1,7 @@
 // The update kernel of the estimators that test or adapt against the double-precision reference, on random states.
 // A state whose p-value lies so near the significance that the kernel's floats may fall on the other side is left out
-// and counted: 1e-5 for chi-squared; 1e-4 for the F-tests, whose thresholds are interpolated and whose means of many
-// samples have only a float's digits left to differ by.
+// and counted: within 1e-5 for chi-squared; within 1e-4 for the F-tests, whose means are floats: after 10^4 samples
+// means differ significantly that share their first two digits. (Interpolating the thresholds moves p by less than 1e-6.)
 
 #include <algorithm>
 #include <cmath>
@@ -257,7 +257,7 @@ Outcome compare_f_test(const std::string& name, std::uint32_t rings, std::uint32
             const PValue p_value = [&](std::uint32_t inner) {
                 return reference::f_test_p_value(statistics, {inner, cells.sectors});
             };
-            if (!decided(p_value, rings, 1e-5)) {
+            if (!decided(p_value, rings, 1e-4)) {
                 ++outcome.excluded;
                 continue;
             }
@@ -305,7 +305,6 @@ TEST_P(EstimatorUpdate, DecidesAsTheReference) {
     RecordProperty("inner", int(outcome.inner));
     RecordProperty("shrunk", int(outcome.shrunk));
     RecordProperty("excluded", int(outcome.excluded));
-    printf("%zu %zu %zu excluded %zu\n", outcome.kept, outcome.inner, outcome.shrunk, outcome.excluded);
     EXPECT_GT(outcome.kept, 10000u);
     EXPECT_GT(outcome.shrunk, 3000u);
     if (GetParam() != "cppm-null") {
@@ -371,8 +370,7 @@ TEST_F(AppmUpdate, ChoosesTheRadiusOfTheReference) {
     }
     const States after = update.run(before);
 
-    double worst = 0.0;
-    std::size_t kept = 0, low = 0, high = 0, free = 0;
+    std::size_t kept = 0, low = 0, high = 0, between = 0;
     for (std::size_t pixel = 0; pixel < pixels && !HasFailure(); ++pixel) {
         const gpu::PixelState& state = before.pixels[pixel];
         const double done = state.count;
@@ -392,16 +390,14 @@ TEST_F(AppmUpdate, ChoosesTheRadiusOfTheReference) {
         EXPECT_NEAR(got / radius, 1.0, 1e-5)
             << "pixel " << pixel << ": " << reference.iterations << " iterations, V " << reference.sum_second_moment
             << ", Laplacian " << reference.sum_laplacian << ", first radius " << reference.first_radius;
-        worst = std::max(worst, std::abs(got / radius - 1.0));
         const double unit = radius / reference.first_radius * std::pow(done + 1.0, 1.0 / 6.0);
-        ++(reference.photons < 10 ? kept : unit < 0.1000001 ? low : unit > 1.9999999 ? high : free);
+        ++(reference.photons < 10 ? kept : unit < 0.1000001 ? low : unit > 1.9999999 ? high : between);
         EXPECT_EQ(after.pixels[pixel].total, state.total + before.found[pixel]);
         EXPECT_EQ(after.pixels[pixel].count, float(done + 1.0));
         EXPECT_EQ(moment(after, APPM_SECOND_MOMENT_NOW, pixel), 0.0f);
         EXPECT_EQ(moment(after, APPM_LAPLACIAN_NOW, pixel), 0.0f);
     }
-    printf("worst %g kept %zu low %zu high %zu free %zu\n", worst, kept, low, high, free);
-    for (const std::size_t outcome : {kept, low, high, free}) EXPECT_GT(outcome, 5000u);
+    for (const std::size_t outcome : {kept, low, high, between}) EXPECT_GT(outcome, 5000u);
 }
 
 }  // namespace

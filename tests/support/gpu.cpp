@@ -7,6 +7,11 @@ Device& device() {
     return shared;
 }
 
+Device& plain_device() {
+    static Device shared(Device::Options{.select = "", .validate = false});
+    return shared;
+}
+
 void GpuTest::SetUp() {
     ASSERT_TRUE(device().validating());
     messages_before_ = device().validation_messages().size();

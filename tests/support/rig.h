@@ -12,11 +12,11 @@
 namespace vkcppm::test {
 
 struct Rig {
-    Rig(Scene scene_, const Settings& wanted)
+    Rig(Scene scene_, const Settings& wanted, Device& on = device())
         : scene(std::move(scene_)),
           settings(resolve_settings(wanted, scene)),
           flat(flatten(scene)),
-          integrator(device(), flat, scene.cameras.at(0), settings) {}
+          integrator(on, flat, scene.cameras.at(0), settings) {}
 
     /// The whole buffer of that binding as values of T.
     template <typename T>

@@ -58,9 +58,9 @@ double reach_of(const Settings& settings) { return settings.estimator == "appm" 
 
 Settings resolve(Settings settings, const Field& field, std::uint32_t side, double lambda) {
     settings.size = Extent{side, side};
-    // A lane has ten slots a path. Six standard deviations, and room for a batch of clusters, above the mean.
+    // A lane has more than four slots a path. Six standard deviations above the mean.
     const double reach = reach_of(settings), mean = side * side * lambda * reach * reach * field.peak;
-    settings.photons = std::uint32_t(std::ceil((mean + 6.0 * std::sqrt(mean * field.cluster)) / 10.0)) + 16;
+    settings.photons = std::uint32_t(std::ceil((mean + 6.0 * std::sqrt(mean * field.cluster)) / 4.0)) + 16;
     return resolve_settings(settings, plane());
 }
 

@@ -1,0 +1,114 @@
+// A picture does not depend on how its work is cut: small step budgets, small photon buffers, one iteration at a time.
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "render/estimators.h"
+#include "support/gpu.h"
+#include "support/rig.h"
+#include "support/shapes.h"
+
+namespace vkcppm::test {
+namespace {
+
+Settings settings_of(const std::string& estimator, std::uint32_t seed = 1) {
+    Settings settings;
+    settings.estimator = estimator;
+    settings.size = Extent{48, 32};
+    settings.photons = 1500;
+    settings.seed = seed;
+    return settings;
+}
+
+constexpr std::uint32_t iterations = 5;
+
+/// Pixels whose bits differ.
+std::size_t differences(const Image& a, const Image& b) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < a.rgb.size(); ++i) count += std::memcmp(&a.rgb[i], &b.rgb[i], sizeof(a.rgb[i])) != 0 ? 1 : 0;
+    return count;
+}
+
+std::map<std::string, std::uint64_t> calls(const Rig& rig) {
+    Report report;
+    rig.integrator.fill(report);
+    std::map<std::string, std::uint64_t> result;
+    for (const PassReport& pass : report.passes) result[pass.name] = pass.calls;
+    return result;
+}
+
+class Resume : public GpuTest, public testing::WithParamInterface<std::string> {};
+
+TEST_P(Resume, SmallStepBudgetsGiveTheSameBits) {
+    Rig whole(room(), settings_of(GetParam())), cut(room(), settings_of(GetParam()));
+    gpu::Params params = cut.integrator.params();
+    params.step_budget = 150;
+    cut.integrator.set_params(params);
+    whole.integrator.run(iterations);
+    cut.integrator.run(iterations);
+    // A pass of the whole render may run again because the photon buffer grew, but in one round each time.
+    const auto expected = calls(whole), got = calls(cut);
+    for (const char* pass : {"eye", "photon", "knn", "gather"}) {
+        EXPECT_GE(got.at(pass), expected.at(pass) + iterations) << pass << " was not cut into rounds";
+    }
+    EXPECT_EQ(differences(whole.integrator.resolve(), cut.integrator.resolve()), 0u) << "of " << whole.pixels() << " pixels";
+    const auto a = whole.all<gpu::PixelState>(BIND_PIXELS), b = cut.all<gpu::PixelState>(BIND_PIXELS);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        ASSERT_EQ(std::memcmp(&a[i], &b[i], sizeof(a[i])), 0)
+            << "pixel " << i << ": radius^2 " << a[i].radius2 << " and " << b[i].radius2 << ", total " << a[i].total << " and "
+            << b[i].total << ", rejections " << a[i].rejections << " and " << b[i].rejections;
+    }
+}
+
+std::vector<std::string> all_estimators() {
+    std::vector<std::string> names;
+    for (const EstimatorRow& row : estimators()) names.emplace_back(row.name);
+    return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Estimators, Resume, testing::ValuesIn(all_estimators()), [](const auto& info) {
+    std::string name = info.param;
+    std::replace(name.begin(), name.end(), '-', '_');
+    return name;
+});
+
+class Determinism : public GpuTest {};
+
+TEST_F(Determinism, SmallPhotonBuffersGiveTheSameBits) {
+    Rig whole(room(), settings_of("cppm"));
+    whole.integrator.run(iterations);
+    const Image expected = whole.integrator.resolve();
+    for (const auto& [capacity, budget] : {std::pair(3u, 0u), std::pair(20u, 0u), std::pair(5u, 150u)}) {
+        Rig cut(room(), settings_of("cppm"));
+        gpu::Params params = cut.integrator.params();
+        params.photon_capacity = capacity;
+        if (budget > 0) params.step_budget = budget;
+        cut.integrator.set_params(params);
+        cut.integrator.run(iterations);
+        EXPECT_GT(cut.integrator.params().photon_capacity, capacity) << "the buffer was never too small";
+        EXPECT_EQ(differences(expected, cut.integrator.resolve()), 0u)
+            << "of " << whole.pixels() << " pixels, capacity " << capacity << ", step budget " << budget;
+        Report a, b;
+        whole.integrator.fill(a);
+        cut.integrator.fill(b);
+        EXPECT_EQ(a.stored_photons, b.stored_photons);
+    }
+}
+
+TEST_F(Determinism, TheSameSeedGivesTheSameBitsAndAnotherSeedOthers) {
+    Rig first(room(), settings_of("cppm")), again(room(), settings_of("cppm")), other(room(), settings_of("cppm", 2));
+    first.integrator.run(iterations);
+    for (std::uint32_t i = 0; i < iterations; ++i) again.integrator.run(1);
+    other.integrator.run(iterations);
+    const Image a = first.integrator.resolve(), b = again.integrator.resolve(), c = other.integrator.resolve();
+    EXPECT_EQ(differences(a, b), 0u) << "of " << first.pixels() << " pixels, in one submission and in " << iterations;
+    EXPECT_GT(differences(a, c), first.pixels() * 9 / 10) << "of " << first.pixels() << " pixels under another seed";
+}
+
+}  // namespace
+}  // namespace vkcppm::test
