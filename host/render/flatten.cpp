@@ -68,6 +68,8 @@ void add_triangles(const Scene& scene, FlatScene& flat) {
         const glm::vec3 extent = glm::abs(geometry.v0) + glm::abs(geometry.e1) + glm::abs(geometry.e2);
         // Rounding of v0 + u e1 + v e2 and of the corners themselves: 8 half-ulps of the largest term.
         geometry.error = 4.8e-7f * std::max({extent.x, extent.y, extent.z});
+        // Rounding of s . (d x e2) and d . (s x e1) for |s| = |d| = 1: 12 half-ulps of the longer edge.
+        geometry.slack = 7.2e-7f * std::max(glm::length(geometry.e1), glm::length(geometry.e2));
         flat.triangles.push_back(geometry);
 
         const glm::dvec3 normal = glm::cross(glm::dvec3(geometry.e1), glm::dvec3(geometry.e2));

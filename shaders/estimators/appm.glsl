@@ -47,9 +47,13 @@ void appm_record(uint pixel, Accepted photon, bool inside) {
     appm_sums.y += y * stencil / (PI * pilot2 * pilot2);
 }
 
+void appm_begin(uint pixel) {
+    appm_sums = vec2(moments[row_of(APPM_SECOND_MOMENT_NOW, pixel)], moments[row_of(APPM_LAPLACIAN_NOW, pixel)]);
+}
+
 void appm_flush(uint pixel) {
-    moments[row_of(APPM_SECOND_MOMENT_NOW, pixel)] += appm_sums.x;
-    moments[row_of(APPM_LAPLACIAN_NOW, pixel)] += appm_sums.y;
+    moments[row_of(APPM_SECOND_MOMENT_NOW, pixel)] = appm_sums.x;
+    moments[row_of(APPM_LAPLACIAN_NOW, pixel)] = appm_sums.y;
 }
 
 void appm_update(uint pixel, bool diffuse, uint found, inout PixelState state) {

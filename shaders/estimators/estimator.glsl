@@ -1,6 +1,6 @@
 // The family's one switch. An estimator has these hooks:
 //   record(pixel, photon, inside): a photon was accepted; `inside`: within R, else within search_radius2 only. It
-//   adds to registers of the invocation, which begin() clears; flush(pixel) adds them to the pixel's statistics;
+//   adds to registers of the invocation; begin(pixel) and flush(pixel) stand before and after the walk, in every round;
 //   update(pixel, diffuse, found, state): after an iteration in which `found` photons were accepted within R
 //   (`diffuse`: the pixel saw a surface to gather on); decides state.radius2 for the next one;
 //   clear_statistics(pixel): forgets what was recorded, when a radius begins;
@@ -26,10 +26,13 @@ struct Accepted {
 #include "estimators/ftest.glsl"
 #include "estimators/algorithm1.glsl"
 
-void begin() {
-    for (uint word = 0u; word < (DISC_CELLS + 1u) / 2u; ++word) counted[word] = 0u;
-    for (uint cell = 0u; cell < DISC_CELLS; ++cell) contributed[cell] = 0.0;
-    appm_sums = vec2(0.0);
+void begin(uint pixel) {
+    switch (ESTIMATOR) {
+        case ESTIMATOR_APPM: appm_begin(pixel); break;
+        case ESTIMATOR_FTEST:
+        case ESTIMATOR_FTEST_FOLD: ftest_begin(pixel); break;
+        default: tally_begin(); break;
+    }
 }
 
 void record(uint pixel, Accepted photon, bool inside) {

@@ -16,8 +16,13 @@ void ftest_record(uint pixel, Accepted photon) {
     for (uint cell = 0u; cell < DISC_CELLS; ++cell) contributed[cell] += cell == bin ? x : 0.0;
 }
 
+// The sums go on from where the round before left them: the same additions in the same order, however work is split.
+void ftest_begin(uint pixel) {
+    for (uint cell = 0u; cell < DISC_CELLS; ++cell) contributed[cell] = moments[row_of(cell, pixel)];
+}
+
 void ftest_flush(uint pixel) {
-    for (uint cell = 0u; cell < DISC_CELLS; ++cell) moments[row_of(cell, pixel)] += contributed[cell];
+    for (uint cell = 0u; cell < DISC_CELLS; ++cell) moments[row_of(cell, pixel)] = contributed[cell];
 }
 
 // Takes this iteration's sums as one more sample of every cell.

@@ -32,6 +32,10 @@ void count(uint bin) {
     }
 }
 
+void tally_begin() {
+    for (uint word = 0u; word < (DISC_CELLS + 1u) / 2u; ++word) counted[word] = 0u;
+}
+
 void tally_flush(uint pixel) {
     for (uint bin = 0u; bin < DISC_CELLS; ++bin) {
         tally[row_of(bin, pixel)] += counted[bin / 2u] >> (16u * (bin % 2u)) & 0xffffu;

@@ -31,9 +31,12 @@ vec4 random4(uint seed, uint iteration, uint stream, uint path, uint dimension) 
 // Dimensions of an eye path that are stratified over the iterations of a pixel.
 #define STRATIFIED_DIMENSIONS 8u
 
-// Additive recurrences modulo 1: the fractional parts of powers of the plastic number, then of square roots of primes,
-// times 2^32. Rationally independent, so the dimensions are equidistributed together (Weyl 1916).
-const uint RECURRENCE[STRATIFIED_DIMENSIONS] = uint[](0xc13fa9a9u, 0x91e10da5u, 0x6a09e667u, 0xbb67ae85u, 0x3c6ef372u, 0xa54ff53au, 0x510e527fu, 0x9b05688cu);
+// Steps of additive recurrences modulo 1, times 2^32: two powers of the inverse of the plastic number for the place in
+// the pixel, then the square roots of 13, 43, 59, 257, 1237 and 7649. Rationally independent, so the dimensions are
+// equidistributed together (Weyl 1916); of the square roots of primes the first whose pairs are more even than random
+// numbers after few iterations too.
+const uint RECURRENCE[STRATIFIED_DIMENSIONS] = uint[](0xc13fa9a9u, 0x91e10da5u, 0x9b05688cu, 0x8eb44a87u, 0xae5f9156u,
+                                                      0x07fe00ffu, 0x2bc75cf6u, 0x75644b49u);
 
 // A number in [0, 1) for dimension `dimension` of the eye path of `pixel`: over the iterations a low-discrepancy
 // sequence, shifted at random for every pixel and dimension; independent numbers beyond the stratified dimensions.

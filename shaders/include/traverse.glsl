@@ -11,23 +11,22 @@ struct Hit {
 #define TRACE_HIT 1u
 #define TRACE_UNFINISHED 2u  // out of steps: nothing is known of the ray
 
-// Both sides of shared edges accept this much beyond: closed meshes stay closed under rounding.
-const float EDGE_TOLERANCE = 2e-7;
-
 void intersect_triangle(uint index, vec3 origin, vec3 direction, inout Hit hit) {
     int texel = int(index) * 3;
     vec3 v0 = texelFetch(triangles, texel).xyz;
-    vec3 e1 = texelFetch(triangles, texel + 1).xyz;
+    vec4 e1 = texelFetch(triangles, texel + 1);
     vec3 e2 = texelFetch(triangles, texel + 2).xyz;
     vec3 p = cross(direction, e2);
-    float inverse = 1.0 / dot(e1, p);
+    float inverse = 1.0 / dot(e1.xyz, p);
     vec3 s = origin - v0;
+    // Both triangles of a shared edge accept a hit within rounding of it: closed meshes stay closed.
+    float slack = e1.w * max(abs(s.x), max(abs(s.y), abs(s.z))) * abs(inverse);
     float u = dot(s, p) * inverse;
-    vec3 q = cross(s, e1);
+    vec3 q = cross(s, e1.xyz);
     float v = dot(direction, q) * inverse;
     float t = dot(e2, q) * inverse;
     // A parallel ray divides by zero: u, v, t are then infinite or NaN and a comparison fails.
-    if (u >= -EDGE_TOLERANCE && v >= -EDGE_TOLERANCE && u + v <= 1.0 + EDGE_TOLERANCE && t > 0.0 && t < hit.t) {
+    if (u >= -slack && v >= -slack && u + v <= 1.0 + slack && t > 0.0 && t < hit.t) {
         hit = Hit(t, index, vec2(u, v));
     }
 }

@@ -40,7 +40,7 @@ void main() {
     tangent *= inverse_radius;
     bitangent *= inverse_radius;
 
-    begin();
+    begin(pixel);
     int steps = int(params.step_budget);
     float reach2 = search_radius2(pixel, radius2);
     CellBox box = cell_box(position, sqrt(reach2));

@@ -14,13 +14,16 @@ layout(binding = BIND_FILM, scalar) buffer FilmBlock { Film film[]; };
 
 bool finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
 
-// Neumaier's sum: `low` carries what each addition rounds away, so that 10^6 iterations do not stagnate.
+// Sum in two floats, `low` below half an ulp of `sum` (Dekker 1971): 10^6 additions err by 10^6 2^-47 of the sum. A
+// `low` that is only added to (Neumaier 1974) grows until its own rounding shows, with the square of their number.
 void add(inout float sum, inout float low, float value) {
     precise float total = sum + value;
     precise float lost = abs(sum) >= abs(value) ? (sum - total) + value : (value - total) + sum;
     precise float carried = low + lost;
-    sum = total;
-    low = carried;
+    precise float renewed = total + carried;
+    precise float rest = carried - (renewed - total);
+    sum = renewed;
+    low = rest;
 }
 
 void main() {

@@ -76,9 +76,9 @@ struct TriangleGeometry {
     vec3 v0;
     float error;       // bound of the rounding error of a point on it: rays start this far off its plane
     vec3 e1;           // v1 - v0
-    uint unused1;
+    float slack;       // bound of the rounding of barycentrics, for a ray origin at distance 1 and a determinant of 1
     vec3 e2;           // v2 - v0
-    uint unused2;
+    uint unused;
 };
 
 // 16 bytes, read as 1 uvec4 texel.
@@ -163,7 +163,7 @@ struct Aovs {
     uint hits;
 };
 
-// Compensated sum of radiance (Neumaier): sum + low is the estimate times the iterations.
+// Sum of radiance in two floats: sum + low is the estimate times the iterations.
 struct Film {
     vec3 sum;
     vec3 low;

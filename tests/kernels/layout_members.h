@@ -4,7 +4,7 @@
 #pragma once
 #endif
 #define MEMBERS_BVH_NODE X(origin) X(exponents) X(low_x) X(low_y) X(low_z) X(high_x) X(high_y) X(high_z) X(child) X(unused)
-#define MEMBERS_TRIANGLE_GEOMETRY X(v0) X(error) X(e1) X(unused1) X(e2) X(unused2)
+#define MEMBERS_TRIANGLE_GEOMETRY X(v0) X(error) X(e1) X(slack) X(e2) X(unused)
 #define MEMBERS_TRIANGLE_SHADING X(normal) X(material)
 #define MEMBERS_SURFACE_MATERIAL X(color) X(kind) X(emission) X(ior)
 #define MEMBERS_LIGHT X(position) X(kind) X(e1) X(keep) X(e2) X(alias_entry) X(power) X(double_sided)
@@ -25,5 +25,5 @@
     X(eye) X(width) X(right) X(height) X(up) X(seed) X(forward) X(pixel_radius) X(bounds_low) X(photons) \
     X(bounds_high) X(photons_per_lane) X(photon_lanes) X(photon_capacity) X(max_depth) X(light_count) X(step_budget) \
     X(knn) X(radius_cap) X(radius_floor) X(footprint_cap) X(scene_area) X(inverse_paths) X(alpha) X(k) X(beta) \
-    X(cells) X(sort_lanes) X(threshold) X(sector_edge) X(sector_centre)
+    X(cells) X(sort_lanes) X(scan_blocks) X(threshold) X(sector_edge) X(sector_centre)
 #define MEMBERS_LAUNCH X(iteration) X(round) X(last_round) X(offset) X(count)

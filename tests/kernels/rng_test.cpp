@@ -145,24 +145,27 @@ TEST_F(Rng, StratifiedNumbersAreEquidistributedOverIterations) {
                 << "dimension " << dimension << ", " << n << " iterations; random numbers reach " << random;
         }
     }
-    // Every pair of dimensions fills the square far more evenly than random numbers do, whose statistic is about 255.
+    // Every pair of dimensions fills the square more evenly than random numbers, whose statistic is about the degrees of
+    // freedom, after few iterations and after many; and so do all dimensions together the orthants of the cube.
     for (std::size_t a = 0; a < drawn.size(); ++a) {
         for (std::size_t b = 0; b < a; ++b) {
-            const auto pairs = bins_of_pairs(samples, [&](std::size_t i) {
-                return std::pair(drawn[a][i].stratified, drawn[b][i].stratified);
-            });
-            EXPECT_LT(chi_squared_uniform(pairs).statistic, 25.5)
-                << "dimensions " << a << " and " << b << "; " << chi_squared_uniform(pairs).worst;
+            for (const auto& [n, side] : {std::pair<std::size_t, std::size_t>(64, 4), {256, 8}, {1024, 16}, {4096, 16}, {16384, 16}, {samples, 16}}) {
+                std::vector<std::uint64_t> bins(side * side);
+                for (std::size_t i = 0; i < n; ++i) {
+                    ++bins[std::size_t(drawn[a][i].stratified * float(side)) * side + std::size_t(drawn[b][i].stratified * float(side))];
+                }
+                const ChiSquared test = chi_squared_uniform(bins);
+                EXPECT_LT(test.statistic, test.freedom) << "dimensions " << a << " and " << b << ", " << n << " iterations; " << test.worst;
+            }
         }
     }
-    // All eight together: the 2^8 orthants of the cube.
-    std::vector<std::uint64_t> orthants(256);
+    std::vector<std::uint64_t> orthants(std::size_t(1) << stratified_dimensions);
     for (std::size_t i = 0; i < samples; ++i) {
         std::size_t index = 0;
         for (const auto& dimension : drawn) index = 2 * index + (dimension[i].stratified >= 0.5f ? 1 : 0);
         ++orthants[index];
     }
-    EXPECT_LT(chi_squared_uniform(orthants).statistic, 255.0) << chi_squared_uniform(orthants).worst;
+    EXPECT_LT(chi_squared_uniform(orthants).statistic, chi_squared_uniform(orthants).freedom) << chi_squared_uniform(orthants).worst;
 }
 
 TEST_F(Rng, StratifiedNumbersAreIndependentBetweenPixels) {

@@ -103,7 +103,6 @@ class Update : public GpuTest, public testing::WithParamInterface<std::string> {
 
 TEST_P(Update, DecidesAsTheReference) {
     const EstimatorRow& row = find_estimator(GetParam());
-    if (statistical.contains(GetParam())) GTEST_SKIP() << "in tests/statistical";
     ASSERT_TRUE(rules.contains(GetParam())) << "estimator '" << GetParam() << "' has no rule of the reference";
     const Rule& rule = rules.at(GetParam());
     for (const auto& [rings, sectors] : {std::pair(2u, 6u), std::pair(4u, 12u)}) {
@@ -183,13 +182,16 @@ TEST_P(Update, DecidesAsTheReference) {
     }
 }
 
-std::vector<std::string> all_estimators() {
+/// All but those that tests/statistical holds to account: a new row without a rule fails here.
+std::vector<std::string> rows_tested_here() {
     std::vector<std::string> names;
-    for (const EstimatorRow& row : estimators()) names.emplace_back(row.name);
+    for (const EstimatorRow& row : estimators()) {
+        if (!statistical.contains(std::string(row.name))) names.emplace_back(row.name);
+    }
     return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(Estimators, Update, testing::ValuesIn(all_estimators()), [](const auto& info) {
+INSTANTIATE_TEST_SUITE_P(Estimators, Update, testing::ValuesIn(rows_tested_here()), [](const auto& info) {
     std::string name = info.param;
     std::replace(name.begin(), name.end(), '-', '_');
     return name;
@@ -270,10 +272,12 @@ TEST_F(FilmSum, AddsTheEstimateWithTheRadiusBeforeTheUpdate) {
     EXPECT_LE(misplaced, 10u) << "radii in other bins of the histogram; a few may lie on a boundary";
 }
 
-TEST_F(FilmSum, AMillionAdditionsDoNotStagnate) {
+TEST_F(FilmSum, ManyAdditionsDoNotStagnate) {
+    // Two floats err by at most 2^-47 of the sum in an addition; a million of them then by 1e-8.
+    constexpr double error_of_one = 0x1p-47;
     // One pixel each: constant, small after a large one, smaller still, tiny.
     const std::vector<float> first = {0.1f, 1e6f, 3.3333333f, 1e-3f}, then = {0.1f, 0.1f, 1e-4f, 1e-3f};
-    constexpr std::uint64_t additions = 1000000, burst = 20000;
+    constexpr std::uint64_t additions = 50000, burst = 10000;
     const std::uint32_t count = std::uint32_t(first.size());
     gpu::Params params{};
     params.width = count;
@@ -281,13 +285,13 @@ TEST_F(FilmSum, AMillionAdditionsDoNotStagnate) {
     params.photons = 1;
     params.inverse_paths = 1.0f;
     params.alpha = 0.5f;
-    Buffer parameters(device(), "parameters", sizeof(params), Buffer::Kind::uniform);
+    Buffer parameters(plain_device(), "parameters", sizeof(params), Buffer::Kind::uniform);
     parameters.upload_value(params);
-    Bindings bindings(device());
+    Bindings bindings(plain_device());
     bindings.bind(BIND_PARAMS, parameters);
     std::map<std::uint32_t, Buffer> buffers;
     const auto add = [&](std::uint32_t binding, std::uint64_t bytes) -> Buffer& {
-        Buffer& buffer = buffers.emplace(binding, Buffer(device(), "film test", bytes, Buffer::Kind::storage)).first->second;
+        Buffer& buffer = buffers.emplace(binding, Buffer(plain_device(), "film test", bytes, Buffer::Kind::storage)).first->second;
         bindings.bind(binding, buffer);
         return buffer;
     };
@@ -301,9 +305,9 @@ TEST_F(FilmSum, AMillionAdditionsDoNotStagnate) {
         for (const float value : values) records.push_back({glm::vec3(value, 2.0f * value, 0.7f * value), 0.0f});
         emission.upload(records);
     };
-    const Kernel kernel(device(), bindings, "update", kernel_module("update").spirv,
+    const Kernel kernel(plain_device(), bindings, "update", kernel_module("update").spirv,
                         {{SPEC_WORKGROUP, 64}, {SPEC_ESTIMATOR, find_estimator("sppm").id}, {SPEC_RINGS, 2}, {SPEC_SECTORS, 6}});
-    Commands commands(device(), bindings, 1);
+    Commands commands(plain_device(), bindings, 1);
     const auto run = [&](std::uint64_t launches) {
         commands.begin();
         for (std::uint64_t i = 0; i < launches; ++i) commands.launch(kernel, count, {.iteration = 0, .round = 0, .last_round = 1, .offset = 0, .count = 0});
@@ -319,7 +323,7 @@ TEST_F(FilmSum, AMillionAdditionsDoNotStagnate) {
             const float factor = c == 0 ? 1.0f : c == 1 ? 2.0f : 0.7f;
             const double want = double(factor * first[i]) + double(additions - 1) * double(factor * then[i]);
             const double got = double(films[i].sum[c]) + double(films[i].low[c]);
-            EXPECT_NEAR(got, want, 1e-6 * want) << "pixel " << i << " channel " << c << ", sum " << films[i].sum[c] << ", low " << films[i].low[c];
+            EXPECT_NEAR(got, want, additions * error_of_one * want) << "pixel " << i << " channel " << c << ", sum " << films[i].sum[c] << ", low " << films[i].low[c];
         }
     }
 }

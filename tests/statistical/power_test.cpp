@@ -55,13 +55,13 @@ const std::vector<Row> rows = {
     {"heavy-tailed", {{"cppm", keeps}, {"cppm-fold", keeps}, {"ftest", {0.01, 0.077}}, {"ftest-fold", {0.01, 0.077}}}},
 };
 
-class Power : public GpuTest, public testing::WithParamInterface<Row> {};
+class Power : public testing::TestWithParam<Row> {};
 
 TEST_P(Power, EveryTestSeesWhatItsNullHypothesisExcludes) {
     for (const auto& [estimator, share] : GetParam().shares) {
         Settings settings;
         settings.estimator = estimator;
-        SyntheticField field(device(), settings, find_field(GetParam().field), side, 10.0, 5);
+        SyntheticField field(plain_device(), settings, find_field(GetParam().field), side, 10.0, 5);
         field.look_once_after(30);
         EXPECT_GE(field.rejected(), share.low) << estimator << " on " << find_field(GetParam().field).formula;
         EXPECT_LE(field.rejected(), share.high) << estimator << " on " << find_field(GetParam().field).formula;
@@ -74,11 +74,9 @@ INSTANTIATE_TEST_SUITE_P(Fields, Power, testing::ValuesIn(rows), [](const auto& 
     return name;
 });
 
-class Folding : public GpuTest {};
-
 // Power of one look at M = 30 and M = 100 photons by simulation on the same fields; folding opposite sectors tests the
 // hypothesis of the random flip with more power.
-TEST_F(Folding, HasTheSimulatedPower) {
+TEST(Folding, HasTheSimulatedPower) {
     struct Case {
         const char* estimator;
         const char* field;
@@ -89,7 +87,7 @@ TEST_F(Folding, HasTheSimulatedPower) {
                           {"cppm-gof", "ridge", 0.308, 0.895}, {"cppm-fold", "ridge", 0.455, 0.957}}) {
         Settings settings;
         settings.estimator = c.estimator;
-        SyntheticField field(device(), settings, find_field(c.field), 48, 100.0, 6);
+        SyntheticField field(plain_device(), settings, find_field(c.field), 48, 100.0, 6);
         for (const auto& [count, power] : {std::pair{30u, c.at_30}, {100u, c.at_100}}) {
             field.reset(1.0);
             field.run_exact(count);

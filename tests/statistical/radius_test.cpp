@@ -19,8 +19,6 @@ namespace {
 
 using std::numbers::pi;
 
-class Radius : public GpuTest {};
-
 Settings settings_of(const char* estimator) {
     Settings settings;
     settings.estimator = estimator;
@@ -28,8 +26,8 @@ Settings settings_of(const char* estimator) {
 }
 
 // r_n^2 / r_1^2 = Gamma(n + alpha) / (Gamma(1 + alpha) Gamma(n + 1)) whatever the photons do.
-TEST_F(Radius, KnausAndZwickerOnPhotons) {
-    SyntheticField field(device(), settings_of("sppm-kz"), find_field("gauss"), 8, 10.0, 1);
+TEST(Radius, KnausAndZwickerOnPhotons) {
+    SyntheticField field(plain_device(), settings_of("sppm-kz"), find_field("gauss"), 8, 10.0, 1);
     std::uint32_t done = 0;
     for (const auto& [iterations, ratio] : {std::pair{10u, 0.4931}, {100u, 0.2376}, {1000u, 0.11072}}) {
         field.run(iterations - done);
@@ -42,8 +40,8 @@ TEST_F(Radius, KnausAndZwickerOnPhotons) {
 
 // Two pixels on the update kernel alone. One has a constant density, so M follows R^2; the other finds ten photons
 // however small its disc is: a product with the closed form n! Gamma(1/alpha) / Gamma(n + 1/alpha).
-TEST_F(Radius, HachisukaAndJensenAtConstantDensityAndAtConstantCount) {
-    SyntheticField field(device(), settings_of("sppm"), find_field("uniform"), 2, 10.0, 1);
+TEST(Radius, HachisukaAndJensenAtConstantDensityAndAtConstantCount) {
+    SyntheticField field(plain_device(), settings_of("sppm"), find_field("uniform"), 2, 10.0, 1);
     const auto ratio_of = [&](std::size_t pixel) { return field.states()[pixel].radius2 / field.first_radius2(); };
     std::uint32_t done = 0;
     for (const auto& [iterations, at_density] : {std::pair{1u, 0.6667}, {2u, 0.5556}, {3u, 0.4938}, {10u, 0.3390},
@@ -62,8 +60,8 @@ TEST_F(Radius, HachisukaAndJensenAtConstantDensityAndAtConstantCount) {
 
 // The gather and the update together: ten photons in the first disc of a uniform field. M is random, but what a small M
 // leaves too large finds more photons next time, so the mean over pixels stays within a few percent of the schedule.
-TEST_F(Radius, HachisukaAndJensenOnPhotons) {
-    SyntheticField field(device(), settings_of("sppm"), find_field("uniform"), 24, 10.0, 2);
+TEST(Radius, HachisukaAndJensenOnPhotons) {
+    SyntheticField field(plain_device(), settings_of("sppm"), find_field("uniform"), 24, 10.0, 2);
     std::uint32_t done = 0;
     for (const auto& [iterations, ratio] : {std::pair{10u, 0.3390}, {100u, 0.1589}}) {
         field.run(iterations - done);
@@ -79,7 +77,7 @@ double batch_slope(double beta, std::uint32_t last) {
     Settings settings = settings_of("cppm-null");
     settings.beta = beta;
     constexpr std::uint32_t side = 12;
-    SyntheticField field(device(), settings, find_field("uniform"), side, 10.0, 3);
+    SyntheticField field(plain_device(), settings, find_field("uniform"), side, 10.0, 3);
     // First batches spread over one period of the staircase, whose steps the mean over pixels thus does not see.
     std::vector<gpu::PixelState> states = field.states();
     for (std::size_t i = 0; i < states.size(); ++i) {
@@ -109,11 +107,11 @@ double batch_slope(double beta, std::uint32_t last) {
 }
 
 // R^2 ~ T^-gamma, gamma = ln(1/k) / (ln(1/k) + ln(beta)): the law of SPPM's alpha = 2/3 at beta = 1 / k^2.
-TEST_F(Radius, BatchesGrowLikeOneOverKSquared) {
+TEST(Radius, BatchesGrowLikeOneOverKSquared) {
     EXPECT_NEAR(batch_slope(1.0 / (0.8 * 0.8), 800), -1.0 / 3.0, 0.01);
 }
 
-TEST_F(Radius, BatchesOfThePaperShrinkFaster) {
+TEST(Radius, BatchesOfThePaperShrinkFaster) {
     EXPECT_NEAR(batch_slope(1.2, 400), std::log(0.8) / (std::log(1.2) - std::log(0.8)), 0.01);
 }
 
@@ -143,10 +141,10 @@ double over_square(const std::function<double(double, double)>& integrand) {
 
 // After one iteration V and the Laplacian are the kernel's and the stencil's averages of the field (r = r_1,
 // r_d = r_1 / 2), and the estimate is the kernel's.
-TEST_F(Radius, AppmMomentsAreAveragesOfTheField) {
+TEST(Radius, AppmMomentsAreAveragesOfTheField) {
     constexpr double lambda = 100.0;
     const Field& gauss = find_field("gauss");
-    SyntheticField field(device(), settings_of("appm"), gauss, 40, lambda, 4);
+    SyntheticField field(plain_device(), settings_of("appm"), gauss, 40, lambda, 4);
     field.run(1);
     const double smoothed = over_square([&](double x, double y) {
         return gauss.density(x, y) * reference::smootherstep_kernel.value(std::hypot(x, y));
@@ -167,9 +165,9 @@ TEST_F(Radius, AppmMomentsAreAveragesOfTheField) {
     EXPECT_NEAR(mean, smoothed, 0.02);
 }
 
-TEST_F(Radius, AppmApproachesTheOptimumOnAGaussianSpot) {
+TEST(Radius, AppmApproachesTheOptimumOnAGaussianSpot) {
     constexpr double lambda = 100.0;
-    SyntheticField field(device(), settings_of("appm"), find_field("gauss"), 16, lambda, 5);
+    SyntheticField field(plain_device(), settings_of("appm"), find_field("gauss"), 16, lambda, 5);
     const double first = std::sqrt(field.first_radius2()), paths = field.integrator().params().photons;
     std::uint32_t done = 0;
     // The pilot sees the spot flattened, so the radius comes from above.
@@ -197,9 +195,9 @@ TEST_F(Radius, AppmApproachesTheOptimumOnAGaussianSpot) {
 
 // The squared distance of the k-th nearest photon leaves k - 1 inside: (k - 1) / (pi R^2) is unbiased, and so is the
 // estimate of the iteration that chose the radius.
-TEST_F(Radius, TheKthNearestPhotonGivesAnUnbiasedDensity) {
+TEST(Radius, TheKthNearestPhotonGivesAnUnbiasedDensity) {
     constexpr double lambda = 40.0, k = 10.0;
-    SyntheticField field(device(), settings_of("cppm"), find_field("uniform"), 64, lambda, 6);
+    SyntheticField field(plain_device(), settings_of("cppm"), find_field("uniform"), 64, lambda, 6);
     std::vector<gpu::PixelState> states = field.states();
     for (gpu::PixelState& state : states) {
         state.radius2 = 0.0f;

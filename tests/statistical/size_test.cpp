@@ -16,8 +16,6 @@
 namespace vkcppm::test {
 namespace {
 
-class Size : public GpuTest {};
-
 Settings settings_of(const std::string& estimator) {
     Settings settings;
     settings.estimator = estimator;
@@ -55,14 +53,14 @@ double exact_size(std::uint32_t cells, std::uint32_t count) {
 
 // Photon counts beside sizes from simulation, in percent: few photons make chi-squared discrete, and the size at M = 10
 // is as far below the nominal 5 % as at M = 12 above.
-TEST_F(Size, ChiSquaredHasItsExactSizeInOneLook) {
+TEST(Size, ChiSquaredHasItsExactSizeInOneLook) {
     constexpr std::uint32_t side = 96;
     using Row = std::pair<std::uint32_t, double>;
     const std::vector<Row> twelve = {{10, 3.5}, {12, 5.5}, {20, 4.0}, {30, 4.3}, {60, 4.7}};
     const std::vector<Row> six = {{5, 2.0}, {10, 4.0}, {30, 4.9}};
     for (const std::string estimator : {"cppm", "cppm-gof", "cppm-fold"}) {
         const bool folded = estimator == "cppm-fold";
-        SyntheticField field(device(), settings_of(estimator), find_field("uniform"), side, 60.0, 1);
+        SyntheticField field(plain_device(), settings_of(estimator), find_field("uniform"), side, 60.0, 1);
         for (const auto& [count, simulated] : folded ? six : twelve) {
             const double exact = exact_size(folded ? 6 : 12, count);
             EXPECT_NEAR(100.0 * exact, simulated, 0.1) << estimator << ", M = " << count;
@@ -79,9 +77,9 @@ void expect_size(double rejected, double pixels, const std::string& what) {
     EXPECT_LT(rejected, 0.055 + 4.0 * binomial_error(0.055, pixels)) << what;
 }
 
-TEST_F(Size, TheLinearTestHasItsSizeInOneLook) {
+TEST(Size, TheLinearTestHasItsSizeInOneLook) {
     constexpr std::uint32_t side = 96;
-    SyntheticField field(device(), settings_of("cppm-lf"), find_field("uniform"), side, 60.0, 2);
+    SyntheticField field(plain_device(), settings_of("cppm-lf"), find_field("uniform"), side, 60.0, 2);
     for (const std::uint32_t count : {10u, 12u, 20u, 30u, 60u}) {
         field.reset(1.0);
         field.run_exact(count);
@@ -89,10 +87,10 @@ TEST_F(Size, TheLinearTestHasItsSizeInOneLook) {
     }
 }
 
-TEST_F(Size, FTestsHaveTheirSizeInOneLook) {
+TEST(Size, FTestsHaveTheirSizeInOneLook) {
     constexpr std::uint32_t side = 96;
     for (const std::string estimator : {"ftest", "ftest-fold"}) {
-        SyntheticField field(device(), settings_of(estimator), find_field("uniform"), side, 10.0, 3);
+        SyntheticField field(plain_device(), settings_of(estimator), find_field("uniform"), side, 10.0, 3);
         for (const std::uint32_t samples : {3u, 5u, 10u, 30u}) {
             field.reset(1.0);
             field.look_once_after(samples);
@@ -105,9 +103,9 @@ TEST_F(Size, FTestsHaveTheirSizeInOneLook) {
 }
 
 // beta = 1.2, ten photons an iteration: 18, 39 and 55 % of uniform pixels reject at least once.
-TEST_F(Size, RepeatedLooksRejectAUniformFieldAsOftenAsSimulated) {
+TEST(Size, RepeatedLooksRejectAUniformFieldAsOftenAsSimulated) {
     constexpr std::uint32_t side = 48;
-    SyntheticField field(device(), settings_of("cppm"), find_field("uniform"), side, 10.0, 4);
+    SyntheticField field(plain_device(), settings_of("cppm"), find_field("uniform"), side, 10.0, 4);
     std::uint32_t done = 0;
     for (const auto& [iterations, share] : {std::pair{10u, 0.18}, {100u, 0.39}, {1000u, 0.55}}) {
         field.run(iterations - done);

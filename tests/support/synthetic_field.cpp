@@ -35,7 +35,7 @@ constexpr std::array all_fields = {
           unit_weight},
     Field{"uniform-clustered", "f = 1, three photons a path at one place", flat_density, 1.0, unit_weight, 3},
     Field{"edge-clustered", "edge, three photons a path at one place", edge_density, 1.0, unit_weight, 3},
-    Field{"flux-gradient", "f = 1, psi = 1 - 0.8 |x|", flat_density, 1.0,
+    Field{"flux-gradient", "f = 1, psi = 1 - 0.8 abs(x)", flat_density, 1.0,
           [](double x, double, Random&) { return std::max(0.0, 1.0 - 0.8 * std::abs(x)); }},
     Field{"heavy-tailed", "f = 1, log psi normal: mean -1.3^2 / 2, deviation 1.3", flat_density, 1.0,
           [](double, double, Random& random) {
