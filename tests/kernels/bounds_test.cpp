@@ -52,9 +52,9 @@ TEST_F(BoundsEntry, RaysStartBeforeTheBoxAndNearIt) {
         std::size_t moved = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const glm::dvec3 o(rays[i].origin), d(rays[i].direction), start(starts[i]);
-            const std::string line = fmt::format("ray {} from ({:.9g}, {:.9g}, {:.9g}) along ({:.9g}, {:.9g}, {:.9g})", i, o.x, o.y,
-                                                 o.z, d.x, d.y, d.z);
-            // Distance to the box, slab by slab, of the box itself and of one that is smaller by the rounding of floats:
+            const std::string line = fmt::format("ray {} from ({:.9g}, {:.9g}, {:.9g}) along ({:.9g}, {:.9g}, {:.9g})",
+                                                 i, o.x, o.y, o.z, d.x, d.y, d.z);
+            // Distance slab by slab to the box itself and to one that is smaller by the rounding of floats:
             // a ray that misses the latter may count as one that misses.
             const double rounding = 3e-7 * glm::length(o);
             double near = 0.0, far = std::numeric_limits<double>::infinity(), inner_near = near, inner_far = far;

@@ -32,8 +32,8 @@ constexpr std::size_t samples = 400000;
 /// A light as the scene states it: what tells its paths from those of others, and its flux.
 struct Source {
     std::string name;
-    glm::dvec3 flux;                      // W
-    const PunctualLight* light = nullptr; // none: a triangle
+    glm::dvec3 flux;                       // W
+    const PunctualLight* light = nullptr;  // none: a triangle
     std::size_t triangle = 0;
     bool double_sided = false;
     std::vector<gpu::EmitOutput> starts;  // filled by the test, frame units
@@ -82,8 +82,12 @@ std::vector<Source> sources_of(const Scene& scene, const FlatScene& flat) {
         const double area = 0.5 * glm::length(glm::cross(scene.positions[v[1]] - scene.positions[v[0]],
                                                          scene.positions[v[2]] - scene.positions[v[0]]));
         const double sides = material.double_sided ? 2.0 : 1.0;
-        sources.push_back({fmt::format("triangle {}", i), pi * area * sides * glm::dvec3(material.emission), nullptr, i,
-                           material.double_sided, {}});
+        sources.push_back({fmt::format("triangle {}", i),
+                           pi * area * sides * glm::dvec3(material.emission),
+                           nullptr,
+                           i,
+                           material.double_sided,
+                           {}});
     }
     // The disc of a directional light covers the scene's bounding sphere about the frame's centre.
     double radius = 0.0;
@@ -102,11 +106,14 @@ std::vector<Source> sources_of(const Scene& scene, const FlatScene& flat) {
     return sources;
 }
 
-double mean(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
+double mean(const glm::dvec3& v) {
+    return (v.x + v.y + v.z) / 3.0;
+}
 
 /// Cosine of the direction to `axis` and azimuth about it, in bins; any frame will do, azimuths are uniform.
 std::vector<std::uint64_t> direction_bins(const Source& source, const glm::dvec3& axis, double low, double high) {
-    const glm::dvec3 side = glm::normalize(glm::cross(axis, std::abs(axis.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
+    const glm::dvec3 side =
+        glm::normalize(glm::cross(axis, std::abs(axis.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
     const glm::dvec3 other = glm::cross(axis, side);
     std::vector<std::uint64_t> bins(10 * 8);
     for (const auto& start : source.starts) {
@@ -199,7 +206,8 @@ TEST_F(Emission, LightsEmitTheirShareWhereAndWhereTo) {
         ASSERT_GT(source.starts.size(), 1000u);
         if (!source.light) {
             const glm::dvec3 v0 = corner(scene, flat, source.triangle, 0);
-            const glm::dvec3 e1 = corner(scene, flat, source.triangle, 1) - v0, e2 = corner(scene, flat, source.triangle, 2) - v0;
+            const glm::dvec3 e1 = corner(scene, flat, source.triangle, 1) - v0,
+                             e2 = corner(scene, flat, source.triangle, 2) - v0;
             const glm::dvec3 normal = glm::cross(e1, e2), unit = glm::normalize(normal);
             std::vector<std::uint64_t> places(16);
             Source turned = source;
@@ -220,7 +228,10 @@ TEST_F(Emission, LightsEmitTheirShareWhereAndWhereTo) {
                 if (cosine < 0.0) start.direction = glm::vec3(glm::dvec3(start.direction) - 2.0 * cosine * unit);
             }
             expect_density("places", chi_squared_uniform(places), level);
-            expect_density("directions", chi_squared(direction_bins(turned, unit, 0.0, 1.0), direction_density(0.0, 1.0, [](double c) { return c * c; })), level);
+            expect_density("directions",
+                           chi_squared(direction_bins(turned, unit, 0.0, 1.0),
+                                       direction_density(0.0, 1.0, [](double c) { return c * c; })),
+                           level);
             if (source.double_sided) {
                 expect_density("sides", chi_squared_uniform(sides), level);
             } else {
@@ -232,7 +243,8 @@ TEST_F(Emission, LightsEmitTheirShareWhereAndWhereTo) {
         const glm::dvec3 position = flat.frame.point(light.position);
         if (light.kind == PunctualLight::Kind::directional) {
             double radius = 0.0;
-            for (const auto& p : scene.positions) radius = std::max(radius, flat.frame.length(glm::distance(p, flat.frame.centre)));
+            for (const auto& p : scene.positions)
+                radius = std::max(radius, flat.frame.length(glm::distance(p, flat.frame.centre)));
             std::vector<std::uint64_t> rings(8);
             for (const auto& start : source.starts) {
                 ASSERT_LT(glm::distance(glm::dvec3(start.direction), light.direction), 1e-6);
@@ -251,7 +263,8 @@ TEST_F(Emission, LightsEmitTheirShareWhereAndWhereTo) {
             low = std::cos(light.outer_cone);
             const double inner = std::cos(light.inner_cone), third = (inner - low) / 3.0, whole = third + 1.0 - inner;
             below = [=](double c) {
-                return (third * std::pow(std::min(1.0, (c - low) / (inner - low)), 3) + std::max(0.0, c - inner)) / whole;
+                return (third * std::pow(std::min(1.0, (c - low) / (inner - low)), 3) + std::max(0.0, c - inner)) /
+                       whole;
             };
         }
         for (const auto& start : source.starts) {
@@ -261,7 +274,8 @@ TEST_F(Emission, LightsEmitTheirShareWhereAndWhereTo) {
             }
         }
         const glm::dvec3 axis = light.kind == PunctualLight::Kind::point ? glm::dvec3(0.6, 0.0, 0.8) : light.direction;
-        expect_density("directions", chi_squared(direction_bins(source, axis, low, 1.0), direction_density(low, 1.0, below)), level);
+        expect_density("directions",
+                       chi_squared(direction_bins(source, axis, low, 1.0), direction_density(low, 1.0, below)), level);
     }
 }
 

@@ -38,7 +38,8 @@ Scene as_uploaded(const Rig& rig) {
         const glm::dvec3 v0(t.v0);
         add_triangle(scene, v0, v0 + glm::dvec3(t.e1), v0 + glm::dvec3(t.e2), shading.material & ~SHADING_FLAT);
         if (shading.material & SHADING_FLAT) continue;
-        for (int c = 0; c < 3; ++c) scene.normals[scene.normals.size() - 3 + c] = glm::vec3(reference::unpack_direction(shading.normal[c]));
+        for (int c = 0; c < 3; ++c)
+            scene.normals[scene.normals.size() - 3 + c] = glm::vec3(reference::unpack_direction(shading.normal[c]));
     }
     return scene;
 }
@@ -52,7 +53,8 @@ std::vector<std::vector<double>> numbers_of(const Rig& rig, std::uint32_t iterat
     Probe probe("rng", rng_words);
     probe.input(PROBE_INPUT, keys);
     probe.output<gpu::RngSample>(PROBE_OUTPUT, keys.size());
-    probe.run(keys.size(), {.iteration = 0, .round = 0, .last_round = 0, .offset = 0, .count = std::uint32_t(keys.size())});
+    probe.run(keys.size(),
+              {.iteration = 0, .round = 0, .last_round = 0, .offset = 0, .count = std::uint32_t(keys.size())});
     const auto samples = probe.result<gpu::RngSample>(PROBE_OUTPUT, keys.size());
     std::vector<std::vector<double>> numbers(rig.pixels());
     for (std::size_t i = 0; i < samples.size(); ++i) numbers[i / dimensions].push_back(samples[i].stratified);
@@ -62,13 +64,14 @@ std::vector<std::vector<double>> numbers_of(const Rig& rig, std::uint32_t iterat
 struct Path {
     bool diffuse = false;
     glm::dvec3 position{0.0}, normal{0.0}, weight{0.0}, emission{0.0};
-    double length = 0.0;      // frame units
+    double length = 0.0;  // frame units
     std::uint32_t bounces = 0;
-    bool delicate = false;    // a choice or a silhouette that rounding may decide otherwise
+    bool delicate = false;  // a choice or a silhouette that rounding may decide otherwise
 };
 
 /// Follows the path of one pixel. Lengths in the frame.
-Path follow(const Rig& rig, const Scene& scene, const reference::Bvh& bvh, std::uint32_t pixel, const std::vector<double>& numbers) {
+Path follow(const Rig& rig, const Scene& scene, const reference::Bvh& bvh, std::uint32_t pixel,
+            const std::vector<double>& numbers) {
     const Extent size = *rig.settings.size;
     const double x = pixel % size.width + numbers[0], y = pixel / size.width + numbers[1];
     reference::Ray ray = reference::camera_ray(rig.scene.cameras[0], size, x, y);
@@ -84,7 +87,8 @@ Path follow(const Rig& rig, const Scene& scene, const reference::Bvh& bvh, std::
         const double slope = glm::dot(surface.shading_normal, ray.direction);
         // Grazing curved glass, a path crosses a facet by a chord that is nearly nothing.
         const bool grazing = slope > (surface.scattering == reference::Scattering::glass ? -0.15 : -0.02);
-        path.delicate = path.delicate || grazing || std::min({hit->barycentric.x, hit->barycentric.y, hit->barycentric.z}) < 1e-4;
+        path.delicate =
+            path.delicate || grazing || std::min({hit->barycentric.x, hit->barycentric.y, hit->barycentric.z}) < 1e-4;
         path.emission += throughput * surface.emission;
         if (surface.scattering == reference::Scattering::lambert) {
             path.diffuse = surface.base_color != glm::dvec3(0.0);
@@ -125,6 +129,7 @@ TEST_F(Eye, PathsEndWhereTheReferenceEndsThem) {
     settings.size = Extent{96, 64};
     settings.photons = 64;
     Scene scene = room();
+    add_sphere(scene, {0.55, 0.45, 0.8}, 0.15, 1, add_diffuse(scene, {0.2f, 0.4f, 0.8f}), false);  // inside the glass
     add_quad(scene, {0.2, 1.0, 0.02}, {0.4, 0.0, 0.0}, {0.0, 0.4, 0.0}, add_emitter(scene, {3.0f, 2.0f, 1.0f}));
     Rig rig(scene, settings);
     const Scene uploaded = as_uploaded(rig);
@@ -142,18 +147,24 @@ TEST_F(Eye, PathsEndWhereTheReferenceEndsThem) {
                 ++delicate;
                 continue;
             }
-            const std::string line = fmt::format("iteration {}, pixel ({}, {}), {} bounces, ends at ({:.6f}, {:.6f}, {:.6f})", iteration,
-                                                 i % 96, i / 96, path.bounces, path.position.x, path.position.y, path.position.z);
+            const std::string line =
+                fmt::format("iteration {}, pixel ({}, {}), {} bounces, ends at ({:.6f}, {:.6f}, {:.6f})", iteration,
+                            i % 96, i / 96, path.bounces, path.position.x, path.position.y, path.position.z);
             // Curved glass magnifies rounding: a factor of about ten an interface.
             const double tolerance = path.bounces > 1 ? 3e-5 * std::pow(4.0, std::min(path.bounces, 6u) - 1.0) : 2e-6;
             ASSERT_EQ((positions[i].state & HIT_MASK) == HIT_DIFFUSE, path.diffuse) << line;
-            ASSERT_LT(glm::distance(glm::dvec3(emissions[i].emission), path.emission), 1e-4 * (1e-3 + glm::length(path.emission))) << line;
+            ASSERT_LT(glm::distance(glm::dvec3(emissions[i].emission), path.emission),
+                      1e-4 * (1e-3 + glm::length(path.emission)))
+                << line;
             emitting += path.emission != glm::dvec3(0.0) ? 1 : 0;
             if (!path.diffuse) continue;
             bounced += path.bounces > 1 ? 1 : 0;
             ASSERT_LT(glm::distance(glm::dvec3(positions[i].position), path.position), tolerance) << line;
-            ASSERT_LT(glm::distance(glm::dvec3(weights[i].weight), path.weight), 1e-4 * glm::length(path.weight)) << line;
-            ASSERT_LT(glm::distance(reference::unpack_direction(weights[i].normal), path.normal), 7e-5 + 10.0 * tolerance) << line;
+            ASSERT_LT(glm::distance(glm::dvec3(weights[i].weight), path.weight), 1e-4 * glm::length(path.weight))
+                << line;
+            ASSERT_LT(glm::distance(reference::unpack_direction(weights[i].normal), path.normal),
+                      7e-5 + 10.0 * tolerance)
+                << line;
             // A disc of the pixel's area at the length of the path, for a view without a bend.
             const double half = std::tan(0.5 * rig.scene.cameras[0].yfov), pixel_side = 2.0 * half / 64.0;
             const double footprint = path.length * pixel_side / std::sqrt(std::numbers::pi);

@@ -19,7 +19,9 @@ constexpr std::uint32_t frame_words[] = {
 #include "frame.spv.inc"
 };
 
-std::string text(const glm::vec3& v) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x, v.y, v.z); }
+std::string text(const glm::vec3& v) {
+    return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x, v.y, v.z);
+}
 
 double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
     return 2.0 * std::asin(std::min(1.0, 0.5 * glm::distance(glm::normalize(a), glm::normalize(b))));
@@ -30,8 +32,9 @@ protected:
     std::vector<gpu::FrameSample> sample(const std::vector<glm::vec3>& directions) {
         probe_.input(PROBE_INPUT, directions);
         probe_.output<gpu::FrameSample>(PROBE_OUTPUT, directions.size());
-        probe_.run(directions.size(),
-                   {.iteration = 0, .round = 0, .last_round = 0, .offset = 0, .count = std::uint32_t(directions.size())});
+        probe_.run(
+            directions.size(),
+            {.iteration = 0, .round = 0, .last_round = 0, .offset = 0, .count = std::uint32_t(directions.size())});
         return probe_.result<gpu::FrameSample>(PROBE_OUTPUT, directions.size());
     }
 
@@ -41,7 +44,8 @@ protected:
         for (const float x : {-1.0f, -0.0f, 0.0f, 1.0f}) {
             for (const float y : {-1.0f, -0.0f, 0.0f, 1.0f}) {
                 for (const float z : {-1.0f, -1e-6f, -1e-20f, -0.0f, 0.0f, 1e-20f, 1e-6f, 1.0f}) {
-                    if (std::abs(x) + std::abs(y) + std::abs(z) > 0.5f) list.push_back(glm::normalize(glm::vec3(x, y, z)));
+                    if (std::abs(x) + std::abs(y) + std::abs(z) > 0.5f)
+                        list.push_back(glm::normalize(glm::vec3(x, y, z)));
                 }
             }
         }
@@ -67,7 +71,8 @@ TEST_F(Frame, PackedDirectionsComeBackWithinTheRoundingOfSixteenBits) {
     const auto list = directions();
     const auto samples = sample(list);
     for (std::size_t i = 0; i < list.size(); ++i) {
-        ASSERT_LE(angle_between(samples[i].unpacked, list[i]), bound) << text(list[i]) << " came back as " << text(samples[i].unpacked);
+        ASSERT_LE(angle_between(samples[i].unpacked, list[i]), bound)
+            << text(list[i]) << " came back as " << text(samples[i].unpacked);
         ASSERT_NEAR(glm::length(glm::dvec3(samples[i].unpacked)), 1.0, 3e-7) << text(list[i]);
         ASSERT_LE(angle_between(samples[i].unpacked, reference::unpack_direction(samples[i].word)), 1e-6)
             << text(list[i]) << " packed as " << samples[i].word;

@@ -37,7 +37,7 @@ Settings settings_of(const std::string& estimator, std::uint32_t photons) {
 
 /// The photons of a rig in the order of the grid, with the flux that pixel normal n would add.
 struct PhotonSet {
-    std::vector<reference::Photon> photons;   // flux without the correction for shading normals
+    std::vector<reference::Photon> photons;  // flux without the correction for shading normals
     std::vector<glm::dvec3> towards;
 };
 
@@ -48,7 +48,8 @@ PhotonSet photons_of(Rig& rig) {
     const auto flux = rig.all<gpu::PhotonFlux>(BIND_SORTED_FLUX);
     PhotonSet set;
     for (std::size_t i = 0; i < count; ++i) {
-        set.photons.push_back({glm::dvec3(sorted[i].position), reference::unpack_direction(sorted[i].normal), glm::dvec3(flux[i].power)});
+        set.photons.push_back(
+            {glm::dvec3(sorted[i].position), reference::unpack_direction(sorted[i].normal), glm::dvec3(flux[i].power)});
         set.towards.push_back(reference::unpack_direction(flux[i].direction));
     }
     return set;
@@ -151,11 +152,13 @@ TEST_F(Gather, StartingRadiusIsTheDistanceOfTheKthNearestPhoton) {
                 ASSERT_EQ(pixels[i].radius2, 0.0f) << "pixel " << i << " sees no diffuse surface";
                 continue;
             }
-            const double cap = std::min<double>(params.radius_cap, std::max<double>(params.radius_floor, params.footprint_cap * emission[i].footprint));
+            const double cap = std::min<double>(
+                params.radius_cap, std::max<double>(params.radius_floor, params.footprint_cap * emission[i].footprint));
             const auto kth = reference::kth_nearest_distance(*point, rig.settings.knn, set.photons);
             const bool found = kth && *kth < cap;
             const double want = found ? *kth * *kth : cap * cap;
-            if (doubtful(*point, want, set.photons).accepted > (found ? 1 : 0)) {  // the k-th itself lies on the boundary
+            if (doubtful(*point, want, set.photons).accepted >
+                (found ? 1 : 0)) {  // the k-th itself lies on the boundary
                 ++doubts;
                 continue;
             }
@@ -181,7 +184,8 @@ TEST_F(Gather, APixelThatFoundTooFewPhotonsTriesAgain) {
     Rig rig(room(), settings_of("cppm", 400));
     rig.integrator.run(1);
     const auto before = rig.all<gpu::PixelState>(BIND_PIXELS);
-    const std::uint32_t unseeded = std::uint32_t(std::count_if(before.begin(), before.end(), [](const auto& p) { return p.seeded == 0; }));
+    const std::uint32_t unseeded =
+        std::uint32_t(std::count_if(before.begin(), before.end(), [](const auto& p) { return p.seeded == 0; }));
     ASSERT_GT(unseeded, 0u) << "the scene is to leave pixels without k photons";
     rig.integrator.run(30);
     const auto after = rig.all<gpu::PixelState>(BIND_PIXELS);
@@ -242,21 +246,28 @@ TEST_F(Gather, SumsCountsAndTalliesAreThoseOfAllPhotons) {
             // On shaded normals: photons arrive per area of the true surface, the BRDF is that of the shaded one.
             for (std::size_t j = 0; j < plain.size(); ++j) {
                 const double shading = std::max(0.0, glm::dot(set.towards[j], point->normal));
-                set.photons[j].flux = plain[j].flux * shading / std::max(0.01, glm::dot(set.towards[j], plain[j].normal));
+                set.photons[j].flux =
+                    plain[j].flux * shading / std::max(0.01, glm::dot(set.towards[j], plain[j].normal));
             }
             const double radius2 = states[i].radius2;
             const auto want = reference::gather(*point, std::sqrt(radius2), set.photons);
             const Doubtful doubt = doubtful(*point, radius2, set.photons);
             photons += want.count;
-            smooth += std::abs(std::max({std::abs(point->normal.x), std::abs(point->normal.y), std::abs(point->normal.z)}) - 1.0) > 1e-3 ? 1 : 0;
-            ASSERT_NEAR(double(gathered[i].count), double(want.count), double(doubt.accepted)) << where(i, *point, radius2);
+            smooth +=
+                std::abs(std::max({std::abs(point->normal.x), std::abs(point->normal.y), std::abs(point->normal.z)}) -
+                         1.0) > 1e-3
+                    ? 1
+                    : 0;
+            ASSERT_NEAR(double(gathered[i].count), double(want.count), double(doubt.accepted))
+                << where(i, *point, radius2);
             if (doubt.accepted > 0) {
                 ++doubtful_pixels;
                 continue;
             }
             // Rounding of n sums of positive terms, and of packed directions in the correction.
             for (int channel = 0; channel < 3; ++channel) {
-                ASSERT_NEAR(gathered[i].flux[channel], want.flux[channel], (1e-5 + 1.2e-7 * double(want.count)) * want.flux[channel])
+                ASSERT_NEAR(gathered[i].flux[channel], want.flux[channel],
+                            (1e-5 + 1.2e-7 * double(want.count)) * want.flux[channel])
                     << where(i, *point, radius2) << ", " << want.count << " photons, channel " << channel;
             }
             std::size_t differences = 0;
@@ -264,8 +275,8 @@ TEST_F(Gather, SumsCountsAndTalliesAreThoseOfAllPhotons) {
                 const std::int64_t got = tally[bin * rig.pixels() + i];
                 differences += std::size_t(std::abs(got - std::int64_t(want.tallies[bin])));
                 if (doubt.cells == 0) {
-                    ASSERT_EQ(got, want.tallies[bin]) << where(i, *point, radius2) << ", ring " << bin / c.sectors
-                                                      << ", sector " << bin % c.sectors;
+                    ASSERT_EQ(got, want.tallies[bin])
+                        << where(i, *point, radius2) << ", ring " << bin / c.sectors << ", sector " << bin % c.sectors;
                 }
             }
             ASSERT_LE(differences, 2 * doubt.cells) << where(i, *point, radius2);
@@ -279,9 +290,11 @@ TEST_F(Gather, SumsCountsAndTalliesAreThoseOfAllPhotons) {
         if (sums.contains(kind)) {
             for (std::size_t i = 0; i < rig.pixels(); ++i) {
                 ASSERT_EQ(sums[kind][i].count, gathered[i].count) << "pixel " << i << ": dense rows and hash differ";
-                ASSERT_LE(glm::distance(sums[kind][i].flux, gathered[i].flux), 1e-5f * glm::length(gathered[i].flux)) << "pixel " << i;
+                ASSERT_LE(glm::distance(sums[kind][i].flux, gathered[i].flux), 1e-5f * glm::length(gathered[i].flux))
+                    << "pixel " << i;
             }
-            for (std::size_t i = 0; i < bins * rig.pixels(); ++i) ASSERT_EQ(tallies[kind][i], tally[i]) << "tally word " << i;
+            for (std::size_t i = 0; i < bins * rig.pixels(); ++i)
+                ASSERT_EQ(tallies[kind][i], tally[i]) << "tally word " << i;
         }
         sums[kind] = gathered;
         tallies[kind] = tally;
@@ -307,7 +320,8 @@ TEST_F(Gather, AFoldedTallyAddsOppositeSectors) {
         for (std::size_t ring = 0; ring < 2; ++ring) {
             for (std::size_t s = 0; s < 3; ++s) {
                 const std::uint32_t both = whole[(ring * 6 + s) * p + i] + whole[(ring * 6 + s + 3) * p + i];
-                ASSERT_EQ(halves[(ring * 3 + s) * p + i], both) << "pixel " << i << ", ring " << ring << ", sector " << s;
+                ASSERT_EQ(halves[(ring * 3 + s) * p + i], both)
+                    << "pixel " << i << ", ring " << ring << ", sector " << s;
                 sum += both;
             }
         }

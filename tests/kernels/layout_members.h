@@ -3,7 +3,8 @@
 #ifdef __cplusplus
 #pragma once
 #endif
-#define MEMBERS_BVH_NODE X(origin) X(exponents) X(low_x) X(low_y) X(low_z) X(high_x) X(high_y) X(high_z) X(child) X(unused)
+#define MEMBERS_BVH_NODE X(origin) X(exponents) X(low_x) X(low_y) X(low_z) X(high_x) X(high_y) X(high_z) \
+    X(child) X(unused)
 #define MEMBERS_TRIANGLE_GEOMETRY X(v0) X(error) X(e1) X(slack) X(e2) X(unused)
 #define MEMBERS_TRIANGLE_SHADING X(normal) X(material)
 #define MEMBERS_SURFACE_MATERIAL X(color) X(kind) X(emission) X(ior)
@@ -14,13 +15,15 @@
 #define MEMBERS_HIT_WEIGHT X(weight) X(normal)
 #define MEMBERS_HIT_EMISSION X(emission) X(footprint)
 #define MEMBERS_GATHERED X(flux) X(count)
-#define MEMBERS_PIXEL_STATE X(radius2) X(seeded) X(count) X(total) X(batch) X(rejections) X(photons) X(seen) X(statistic)
+#define MEMBERS_PIXEL_STATE X(radius2) X(seeded) X(count) X(total) X(batch) X(rejections) \
+    X(photons) X(seen) X(statistic)
 #define MEMBERS_AOVS X(albedo) X(normal) X(depth) X(hits)
 #define MEMBERS_FILM X(sum) X(low)
 #define MEMBERS_PATH_STATE X(origin) X(path) X(direction) X(bounce) X(power) X(stored) X(power0)
 #define MEMBERS_CURSOR X(cell) X(photon)
 #define MEMBERS_GRID X(origin) X(inverse_cell) X(dims) X(cell)
-#define MEMBERS_STATUS X(blocked) X(completed) X(capacity) X(stuck) X(invalid) X(rays) X(stored) X(unused) X(radius_histogram)
+#define MEMBERS_STATUS X(blocked) X(completed) X(capacity) X(stuck) X(invalid) X(rays) \
+    X(stored) X(unused) X(radius_histogram)
 #define MEMBERS_PARAMS \
     X(eye) X(width) X(right) X(height) X(up) X(seed) X(forward) X(pixel_radius) X(bounds_low) X(photons) \
     X(bounds_high) X(photons_per_lane) X(photon_lanes) X(photon_capacity) X(max_depth) X(light_count) X(step_budget) \

@@ -113,10 +113,11 @@ protected:
     Probe probe_{"layout", layout_words};
 };
 
-#define FOR_STRUCTS(F)                                                                                              \
-    F(0, BvhNode) F(1, TriangleGeometry) F(2, TriangleShading) F(3, SurfaceMaterial) F(4, Light) F(5, Photon)     \
-    F(6, PhotonFlux) F(7, HitPosition) F(8, HitWeight) F(9, HitEmission) F(10, Gathered) F(11, PixelState)      \
-    F(12, Aovs) F(13, Film) F(14, PathState) F(15, Cursor) F(16, Grid) F(17, Status) F(18, Params) F(19, Launch)
+#define FOR_STRUCTS(F)                                                                                                \
+    F(0, BvhNode)                                                                                                     \
+    F(1, TriangleGeometry) F(2, TriangleShading) F(3, SurfaceMaterial) F(4, Light) F(5, Photon) F(6, PhotonFlux)      \
+        F(7, HitPosition) F(8, HitWeight) F(9, HitEmission) F(10, Gathered) F(11, PixelState) F(12, Aovs) F(13, Film) \
+            F(14, PathState) F(15, Cursor) F(16, Grid) F(17, Status) F(18, Params) F(19, Launch)
 
 TEST_F(Layout, EveryMemberStandsWhereTheHostPutsIt) {
 #define UPLOAD(index, Struct) upload<gpu::Struct>(BIND_FIRST_STORAGE + index);

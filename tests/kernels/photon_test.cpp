@@ -83,16 +83,20 @@ TEST_F(Photons, LieOnDiffuseSurfacesOnTheSideTheyCameFrom) {
                 diffuse = material.kind == SURFACE_DIFFUSE && material.color != glm::vec3(0.0f);
                 facing = glm::normalize(n);
             }
-            ASSERT_LT(nearest, 5e-7) << fmt::format("photon at ({}, {}, {}) is {} off any triangle", p.x, p.y, p.z, nearest);
-            ASSERT_TRUE(diffuse) << fmt::format("photon at ({}, {}, {}) on a surface that is not diffuse", p.x, p.y, p.z);
+            ASSERT_LT(nearest, 5e-7) << fmt::format("photon at ({}, {}, {}) is {} off any triangle", p.x, p.y, p.z,
+                                                    nearest);
+            ASSERT_TRUE(diffuse) << fmt::format("photon at ({}, {}, {}) on a surface that is not diffuse", p.x, p.y,
+                                                p.z);
             ASSERT_GT(glm::dot(towards, normal), -1e-4) << "arrived from behind its normal";
             ASSERT_GT(std::abs(glm::dot(facing, normal)), 1.0 - 1e-7) << "its normal is not the triangle's";
             ASSERT_TRUE(stored.flux.power.x > 0.0f && stored.flux.power.y > 0.0f && stored.flux.power.z > 0.0f);
         }
     }
     EXPECT_GT(count, 2048u);
-    EXPECT_EQ(count, rig.integrator.buffer(BIND_COUNTERS).download<std::uint32_t>(
-                         rig.integrator.params().cells + 1 + rig.integrator.params().photon_lanes + 1).back());
+    EXPECT_EQ(count,
+              rig.integrator.buffer(BIND_COUNTERS)
+                  .download<std::uint32_t>(rig.integrator.params().cells + 1 + rig.integrator.params().photon_lanes + 1)
+                  .back());
 }
 
 TEST_F(Photons, CarryAllOfTheFluxBeforeRouletteBegins) {
@@ -138,7 +142,7 @@ TEST_F(Photons, CarryTheSameFluxOnAverageUnderRoulette) {
 }
 
 TEST_F(Photons, OfPunctualLightsCarryWhatMeetsASquare) {
-    // A square of half side a; a point light h above its centre sees it under the solid angle 4 asin(a^2 / (a^2 + h^2)),
+    // Square of half side a: a point light h above its centre sees it under the solid angle 4 asin(a^2 / (a^2 + h^2)),
     // a spot within it loses nothing, a directional light sends it E times its area times the cosine.
     Scene scene;
     const double a = 1.0, h = 0.7;

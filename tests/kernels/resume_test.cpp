@@ -30,7 +30,8 @@ constexpr std::uint32_t iterations = 5;
 /// Pixels whose bits differ.
 std::size_t differences(const Image& a, const Image& b) {
     std::size_t count = 0;
-    for (std::size_t i = 0; i < a.rgb.size(); ++i) count += std::memcmp(&a.rgb[i], &b.rgb[i], sizeof(a.rgb[i])) != 0 ? 1 : 0;
+    for (std::size_t i = 0; i < a.rgb.size(); ++i)
+        count += std::memcmp(&a.rgb[i], &b.rgb[i], sizeof(a.rgb[i])) != 0 ? 1 : 0;
     return count;
 }
 
@@ -56,12 +57,13 @@ TEST_P(Resume, SmallStepBudgetsGiveTheSameBits) {
     for (const char* pass : {"eye", "photon", "knn", "gather"}) {
         EXPECT_GE(got.at(pass), expected.at(pass) + iterations) << pass << " was not cut into rounds";
     }
-    EXPECT_EQ(differences(whole.integrator.resolve(), cut.integrator.resolve()), 0u) << "of " << whole.pixels() << " pixels";
+    EXPECT_EQ(differences(whole.integrator.resolve(), cut.integrator.resolve()), 0u)
+        << "of " << whole.pixels() << " pixels";
     const auto a = whole.all<gpu::PixelState>(BIND_PIXELS), b = cut.all<gpu::PixelState>(BIND_PIXELS);
     for (std::size_t i = 0; i < a.size(); ++i) {
         ASSERT_EQ(std::memcmp(&a[i], &b[i], sizeof(a[i])), 0)
-            << "pixel " << i << ": radius^2 " << a[i].radius2 << " and " << b[i].radius2 << ", total " << a[i].total << " and "
-            << b[i].total << ", rejections " << a[i].rejections << " and " << b[i].rejections;
+            << "pixel " << i << ": radius^2 " << a[i].radius2 << " and " << b[i].radius2 << ", total " << a[i].total
+            << " and " << b[i].total << ", rejections " << a[i].rejections << " and " << b[i].rejections;
     }
 }
 

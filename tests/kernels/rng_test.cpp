@@ -31,12 +31,14 @@ protected:
     std::vector<gpu::RngSample> draw(const std::vector<gpu::RngKey>& keys) {
         probe_.input(PROBE_INPUT, keys);
         probe_.output<gpu::RngSample>(PROBE_OUTPUT, keys.size());
-        probe_.run(keys.size(), {.iteration = 0, .round = 0, .last_round = 0, .offset = 0, .count = std::uint32_t(keys.size())});
+        probe_.run(keys.size(),
+                   {.iteration = 0, .round = 0, .last_round = 0, .offset = 0, .count = std::uint32_t(keys.size())});
         return probe_.result<gpu::RngSample>(PROBE_OUTPUT, keys.size());
     }
 
     /// Keys whose field `varied` counts from `first`; the others stay.
-    static std::vector<gpu::RngKey> keys_along(std::uint32_t gpu::RngKey::* varied, gpu::RngKey key, std::uint32_t first) {
+    static std::vector<gpu::RngKey> keys_along(std::uint32_t gpu::RngKey::*varied, gpu::RngKey key,
+                                               std::uint32_t first) {
         std::vector<gpu::RngKey> keys(samples, key);
         for (std::size_t i = 0; i < samples; ++i) keys[i].*varied = first + std::uint32_t(i);
         return keys;
@@ -82,7 +84,7 @@ TEST_F(Rng, GivesTheBitsOfThePaper) {
 TEST_F(Rng, IsUniformAndUncorrelatedBetweenNeighbours) {
     struct Axis {
         const char* name;
-        std::uint32_t gpu::RngKey::* field;
+        std::uint32_t gpu::RngKey::*field;
     };
     const Axis axes[] = {{"path", &gpu::RngKey::path},
                          {"iteration", &gpu::RngKey::iteration},
@@ -98,13 +100,15 @@ TEST_F(Rng, IsUniformAndUncorrelatedBetweenNeighbours) {
             const auto pairs = bins_of_pairs(samples / 2, [&](std::size_t i) {
                 return std::pair(drawn[2 * i].random[c], drawn[2 * i + 1].random[c]);
             });
-            expect_density(fmt::format("component {} of neighbours along {}", c, axis.name), chi_squared_uniform(pairs), level);
+            expect_density(fmt::format("component {} of neighbours along {}", c, axis.name), chi_squared_uniform(pairs),
+                           level);
         }
         for (const auto& [a, b] : {std::pair(0, 1), std::pair(2, 3), std::pair(0, 2)}) {
             const auto pairs = bins_of_pairs(samples, [&, a = a, b = b](std::size_t i) {
                 return std::pair(drawn[i].random[a], drawn[i].random[b]);
             });
-            expect_density(fmt::format("components {} and {} along {}", a, b, axis.name), chi_squared_uniform(pairs), level);
+            expect_density(fmt::format("components {} and {} along {}", a, b, axis.name), chi_squared_uniform(pairs),
+                           level);
         }
     }
 }
@@ -126,7 +130,8 @@ double star_discrepancy(std::vector<float> values) {
     double worst = 0.0;
     const double n = double(values.size());
     for (std::size_t i = 0; i < values.size(); ++i) {
-        worst = std::max({worst, std::abs(double(values[i]) - double(i) / n), std::abs(double(i + 1) / n - double(values[i]))});
+        worst = std::max(
+            {worst, std::abs(double(values[i]) - double(i) / n), std::abs(double(i + 1) / n - double(values[i]))});
     }
     return worst;
 }
@@ -137,7 +142,8 @@ TEST_F(Rng, StratifiedNumbersAreEquidistributedOverIterations) {
     std::vector<std::vector<gpu::RngSample>> drawn;
     for (std::uint32_t dimension = 0; dimension < stratified_dimensions; ++dimension) {
         drawn.push_back(draw(keys_along(&gpu::RngKey::iteration, {1, 0, 0, 77, dimension}, 0)));
-        for (const auto& [n, bound] : {std::pair<std::size_t, double>(64, 0.5), std::pair<std::size_t, double>(samples, 0.1)}) {
+        for (const auto& [n, bound] :
+             {std::pair<std::size_t, double>(64, 0.5), std::pair<std::size_t, double>(samples, 0.1)}) {
             std::vector<float> values(n);
             for (std::size_t i = 0; i < n; ++i) values[i] = drawn.back()[i].stratified;
             const double random = 0.87 * std::sqrt(double(n));
@@ -145,17 +151,24 @@ TEST_F(Rng, StratifiedNumbersAreEquidistributedOverIterations) {
                 << "dimension " << dimension << ", " << n << " iterations; random numbers reach " << random;
         }
     }
-    // Every pair of dimensions fills the square more evenly than random numbers, whose statistic is about the degrees of
+    // Every pair of dimensions is more even than random numbers, whose statistic is about the degrees of
     // freedom, after few iterations and after many; and so do all dimensions together the orthants of the cube.
     for (std::size_t a = 0; a < drawn.size(); ++a) {
         for (std::size_t b = 0; b < a; ++b) {
-            for (const auto& [n, side] : {std::pair<std::size_t, std::size_t>(64, 4), {256, 8}, {1024, 16}, {4096, 16}, {16384, 16}, {samples, 16}}) {
+            for (const auto& [n, side] : {std::pair<std::size_t, std::size_t>(64, 4),
+                                          {256, 8},
+                                          {1024, 16},
+                                          {4096, 16},
+                                          {16384, 16},
+                                          {samples, 16}}) {
                 std::vector<std::uint64_t> bins(side * side);
                 for (std::size_t i = 0; i < n; ++i) {
-                    ++bins[std::size_t(drawn[a][i].stratified * float(side)) * side + std::size_t(drawn[b][i].stratified * float(side))];
+                    ++bins[std::size_t(drawn[a][i].stratified * float(side)) * side +
+                           std::size_t(drawn[b][i].stratified * float(side))];
                 }
                 const ChiSquared test = chi_squared_uniform(bins);
-                EXPECT_LT(test.statistic, test.freedom) << "dimensions " << a << " and " << b << ", " << n << " iterations; " << test.worst;
+                EXPECT_LT(test.statistic, test.freedom)
+                    << "dimensions " << a << " and " << b << ", " << n << " iterations; " << test.worst;
             }
         }
     }
@@ -165,7 +178,8 @@ TEST_F(Rng, StratifiedNumbersAreEquidistributedOverIterations) {
         for (const auto& dimension : drawn) index = 2 * index + (dimension[i].stratified >= 0.5f ? 1 : 0);
         ++orthants[index];
     }
-    EXPECT_LT(chi_squared_uniform(orthants).statistic, chi_squared_uniform(orthants).freedom) << chi_squared_uniform(orthants).worst;
+    EXPECT_LT(chi_squared_uniform(orthants).statistic, chi_squared_uniform(orthants).freedom)
+        << chi_squared_uniform(orthants).worst;
 }
 
 TEST_F(Rng, StratifiedNumbersAreIndependentBetweenPixels) {
@@ -179,11 +193,13 @@ TEST_F(Rng, StratifiedNumbersAreIndependentBetweenPixels) {
         const auto neighbours = bins_of_pairs(samples / 2, [&](std::size_t i) {
             return std::pair(drawn[2 * i].stratified, drawn[2 * i + 1].stratified);
         });
-        expect_density(fmt::format("neighbouring pixels in dimension {}", dimension), chi_squared_uniform(neighbours), level);
+        expect_density(fmt::format("neighbouring pixels in dimension {}", dimension), chi_squared_uniform(neighbours),
+                       level);
         if (!before.empty()) {
             const auto pairs = bins_of_pairs(
                 samples, [&](std::size_t i) { return std::pair(before[i].stratified, drawn[i].stratified); });
-            expect_density(fmt::format("dimensions {} and {}", dimension - 1, dimension), chi_squared_uniform(pairs), level);
+            expect_density(fmt::format("dimensions {} and {}", dimension - 1, dimension), chi_squared_uniform(pairs),
+                           level);
         }
         before = drawn;
     }

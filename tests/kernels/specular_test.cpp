@@ -130,15 +130,18 @@ TEST_F(Specular, ReflectancesAreFresnels) {
     const auto outputs = scatter(inputs);
     std::size_t total = 0;
     for (std::size_t i = 0; i < inputs.size(); ++i) {
-        const double cosine = std::clamp(-glm::dot(glm::dvec3(inputs[i].direction), glm::dvec3(inputs[i].normal)), 0.0, 1.0);
+        const double cosine =
+            std::clamp(-glm::dot(glm::dvec3(inputs[i].direction), glm::dvec3(inputs[i].normal)), 0.0, 1.0);
         const glm::dvec3 metal = reference::fresnel_metal(gold, cosine);
         if (inputs[i].material == mirror_material) {
             for (int c = 0; c < 3; ++c) ASSERT_NEAR(outputs[i].metal[c], metal[c], 2e-6) << describe(inputs[i]);
             continue;
         }
         const Range range = reflectance_range(cosine, ratio(inputs[i]));
-        ASSERT_GE(outputs[i].reflectance, range.low - 1e-6) << describe(inputs[i]) << ", exact " << range.low << " to " << range.high;
-        ASSERT_LE(outputs[i].reflectance, range.high + 1e-6) << describe(inputs[i]) << ", exact " << range.low << " to " << range.high;
+        ASSERT_GE(outputs[i].reflectance, range.low - 1e-6)
+            << describe(inputs[i]) << ", exact " << range.low << " to " << range.high;
+        ASSERT_LE(outputs[i].reflectance, range.high + 1e-6)
+            << describe(inputs[i]) << ", exact " << range.low << " to " << range.high;
         if (range.low == 1.0) {
             ++total;
             ASSERT_EQ(outputs[i].cosine_t, 0.0f) << describe(inputs[i]);
@@ -168,7 +171,8 @@ TEST_F(Specular, DirectionsObeySnellAndThroughputsTheSquaredIndex) {
         if (reflects) {
             ++reflected;
             ASSERT_LT(glm::distance(out, d + 2.0 * cosine * n), 1e-5) << describe(in);
-            const glm::dvec3 factor = in.material == mirror_material ? reference::fresnel_metal(gold, cosine) : glm::dvec3(1.0);
+            const glm::dvec3 factor =
+                in.material == mirror_material ? reference::fresnel_metal(gold, cosine) : glm::dvec3(1.0);
             ASSERT_LT(glm::distance(glm::dvec3(outputs[i].factor), factor), 5e-6) << describe(in);
             continue;
         }
@@ -179,7 +183,8 @@ TEST_F(Specular, DirectionsObeySnellAndThroughputsTheSquaredIndex) {
         ASSERT_LT(glm::distance(out_across, eta * across), 1e-5) << describe(in);
         ASSERT_LT(glm::dot(out, n), 0.0) << describe(in) << ": refracted to its own side";
         const glm::dvec3 factor = glm::dvec3(tint) * (in.radiance ? eta * eta : 1.0);
-        ASSERT_LT(glm::distance(glm::dvec3(outputs[i].factor), factor), 2e-6 * std::max(1.0, eta * eta)) << describe(in);
+        ASSERT_LT(glm::distance(glm::dvec3(outputs[i].factor), factor), 2e-6 * std::max(1.0, eta * eta))
+            << describe(in);
     }
     EXPECT_GT(reflected, 5000u);
     EXPECT_GT(refracted, 5000u);
@@ -195,7 +200,8 @@ TEST_F(Specular, BentShadingNormalsNeverSendARayThroughTheSurfaceItLeft) {
         const glm::vec3 normal = glm::normalize(geometric + 0.8f * random_unit(random));
         if (glm::dot(direction, geometric) >= 0.0f || glm::dot(direction, normal) >= 0.0f) continue;
         const auto material = std::uint32_t(inputs.size() % (indices.size() + 1));
-        inputs.push_back({direction, normal, geometric, uniform(random), std::uint32_t(inputs.size() & 1), material, 0});
+        inputs.push_back(
+            {direction, normal, geometric, uniform(random), std::uint32_t(inputs.size() & 1), material, 0});
     }
     const auto outputs = scatter(inputs);
     for (std::size_t i = 0; i < inputs.size(); ++i) {

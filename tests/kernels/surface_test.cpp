@@ -38,7 +38,8 @@ Scene tilted_triangles(std::mt19937& random) {
         if (i % 2 == 0) continue;
         for (int c = 1; c <= 3; ++c) {  // smooth, and some bent far from the triangle
             glm::vec3& n = scene.normals[scene.normals.size() - c];
-            n = glm::normalize(n + glm::vec3(i % 8 == 1 ? 1.5 : 0.3) * glm::vec3(place(random), place(random), place(random)));
+            n = glm::normalize(n + glm::vec3(i % 8 == 1 ? 1.5 : 0.3) *
+                                       glm::vec3(place(random), place(random), place(random)));
         }
     }
     return scene;
@@ -47,7 +48,8 @@ Scene tilted_triangles(std::mt19937& random) {
 TEST_F(SurfaceAtHit, LiesOnItsPlaneAndFacesTheRay) {
     std::mt19937 random(19);
     std::uniform_real_distribution<double> place(-1.0, 1.0);
-    for (const auto& [name, scene] : {std::pair("room", room()), std::pair("tilted triangles", tilted_triangles(random))}) {
+    for (const auto& [name, scene] :
+         {std::pair("room", room()), std::pair("tilted triangles", tilted_triangles(random))}) {
         SCOPED_TRACE(name);
         const FlatScene flat = flatten(scene);
         std::vector<gpu::RayInput> rays;
@@ -61,7 +63,8 @@ TEST_F(SurfaceAtHit, LiesOnItsPlaneAndFacesTheRay) {
         probe.input(BIND_SHADING, flat.shading, Buffer::Kind::uint_texels);
         probe.input(PROBE_INPUT, rays);
         probe.output<gpu::SurfaceOutput>(PROBE_OUTPUT, rays.size());
-        probe.run(rays.size(), {.iteration = 0, .round = 0, .last_round = 0, .offset = 7000, .count = std::uint32_t(rays.size())});
+        probe.run(rays.size(),
+                  {.iteration = 0, .round = 0, .last_round = 0, .offset = 7000, .count = std::uint32_t(rays.size())});
         const auto outputs = probe.result<gpu::SurfaceOutput>(PROBE_OUTPUT, rays.size());
 
         std::size_t hits = 0, smooth = 0, backs = 0, turned = 0;
@@ -74,14 +77,16 @@ TEST_F(SurfaceAtHit, LiesOnItsPlaneAndFacesTheRay) {
             const glm::dvec3 d(rays[i].direction), v0(t.v0), e1(t.e1), e2(t.e2), p(s.position);
             const glm::dvec3 cross = glm::cross(e1, e2), plane = glm::normalize(cross);
             const double cosine = std::abs(glm::dot(plane, d));
-            const std::string line = fmt::format("ray {} at triangle {}, position ({:.9g}, {:.9g}, {:.9g}), cosine {:.3g}, error bound {:.3g}",
-                                                 i, s.triangle, p.x, p.y, p.z, cosine, s.error);
+            const std::string line = fmt::format(
+                "ray {} at triangle {}, position ({:.9g}, {:.9g}, {:.9g}), cosine {:.3g}, error bound {:.3g}", i,
+                s.triangle, p.x, p.y, p.z, cosine, s.error);
             ASSERT_EQ(s.material, shading.material & ~SHADING_FLAT) << line;
             ASSERT_LE(std::abs(glm::dot(p - v0, plane)), s.error) << line << ": off its plane";
             ASSERT_LT(s.error, 5e-6) << line;
             // Slivers and grazing rays have ill-conditioned barycentrics; the rest is rounding.
             const double condition = glm::length(e1) * glm::length(e2) / glm::length(cross) / cosine;
-            ASSERT_LT(glm::length(glm::cross(p - glm::dvec3(rays[i].origin), d)), 2e-6 * condition) << line << ": off its ray";
+            ASSERT_LT(glm::length(glm::cross(p - glm::dvec3(rays[i].origin), d)), 2e-6 * condition)
+                << line << ": off its ray";
 
             const bool front = glm::dot(plane, d) < 0.0;
             const glm::dvec3 facing = front ? plane : -plane;
@@ -99,7 +104,8 @@ TEST_F(SurfaceAtHit, LiesOnItsPlaneAndFacesTheRay) {
                 const double u = glm::dot(glm::cross(p - v0, e2), cross) / glm::dot(cross, cross);
                 const double v = glm::dot(glm::cross(e1, p - v0), cross) / glm::dot(cross, cross);
                 glm::dvec3 n = glm::normalize((1.0 - u - v) * reference::unpack_direction(shading.normal[0]) +
-                                              u * reference::unpack_direction(shading.normal[1]) + v * reference::unpack_direction(shading.normal[2]));
+                                              u * reference::unpack_direction(shading.normal[1]) +
+                                              v * reference::unpack_direction(shading.normal[2]));
                 if (!front) n = -n;
                 if (std::abs(glm::dot(n, d)) > 1e-3) {
                     const bool away = glm::dot(n, d) > 0.0;
@@ -107,7 +113,8 @@ TEST_F(SurfaceAtHit, LiesOnItsPlaneAndFacesTheRay) {
                     ASSERT_LT(glm::distance(glm::dvec3(s.normal), away ? facing : n), 1e-5 * condition) << line;
                 }
             }
-            const double outside = glm::dot(glm::dvec3(s.outside) - v0, facing), inside = glm::dot(glm::dvec3(s.inside) - v0, facing);
+            const double outside = glm::dot(glm::dvec3(s.outside) - v0, facing),
+                         inside = glm::dot(glm::dvec3(s.inside) - v0, facing);
             ASSERT_GT(outside, 0.0) << line << ": a ray that goes back starts behind the surface";
             ASSERT_LT(inside, 0.0) << line << ": a ray that goes on starts before the surface";
             ASSERT_LT(std::max(outside, -inside), 2.5 * s.error) << line;

@@ -80,7 +80,9 @@ struct Answer {
     std::uint32_t triangle = 0;
 };
 
-std::string text(const Answer& a) { return a.hit ? fmt::format("t {:.9g} in triangle {}", a.t, a.triangle) : "a miss"; }
+std::string text(const Answer& a) {
+    return a.hit ? fmt::format("t {:.9g} in triangle {}", a.t, a.triangle) : "a miss";
+}
 
 /// True where the answers say the same, or where the ray passes so close to an edge of one of their triangles that
 /// rounding decides; counts the latter in `undecided`.
@@ -103,14 +105,15 @@ public:
     explicit Embree(const Scene& scene) : device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_)) {
         rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
         RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-        auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-            geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, scene.positions.size()));
+        auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                                     RTC_FORMAT_FLOAT3, 12, scene.positions.size()));
         for (const glm::dvec3& p : scene.positions) {
             for (int c = 0; c < 3; ++c) *vertices++ = float(p[c]);
         }
-        auto* corners = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-            geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, scene.triangles.size()));
-        for (const Triangle& triangle : scene.triangles) corners = std::copy(triangle.vertex.begin(), triangle.vertex.end(), corners);
+        auto* corners = static_cast<std::uint32_t*>(
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, scene.triangles.size()));
+        for (const Triangle& triangle : scene.triangles)
+            corners = std::copy(triangle.vertex.begin(), triangle.vertex.end(), corners);
         rtcCommitGeometry(geometry);
         rtcAttachGeometry(scene_, geometry);
         rtcReleaseGeometry(geometry);
@@ -158,15 +161,18 @@ protected:
         probe.input(BIND_TRIANGLES, flat.triangles, Buffer::Kind::float_texels);
         probe.input(PROBE_INPUT, rays);
         probe.output<gpu::RayOutput>(PROBE_OUTPUT, rays.size());
-        probe.run(rays.size(),
-                  {.iteration = 0, .round = 0, .last_round = 0, .offset = step_budget, .count = std::uint32_t(rays.size())});
+        probe.run(
+            rays.size(),
+            {.iteration = 0, .round = 0, .last_round = 0, .offset = step_budget, .count = std::uint32_t(rays.size())});
         return probe.result<gpu::RayOutput>(PROBE_OUTPUT, rays.size());
     }
 };
 
 using Random = std::mt19937;
 
-double uniform(Random& random, double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
+double uniform(Random& random, double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+}
 glm::dvec3 in_box(Random& random, double half) {
     return {uniform(random, -half, half), uniform(random, -half, half), uniform(random, -half, half)};
 }
@@ -215,12 +221,18 @@ std::vector<Soup> soups() {
     const auto one_place = [](Scene& scene, int, Random&) {
         add_triangle(scene, {-0.5, -0.5, 0.1}, {0.5, -0.5, 0.0}, {0.0, 0.5, -0.1}, 0);
     };
-    return {{"one", 1, random_triangles(0.8)},      {"two", 2, random_triangles(0.8)},
-            {"five", 5, random_triangles(0.8)},     {"few", 60, random_triangles(0.5)},
-            {"many", 2000, random_triangles(0.1)},  {"overlapping", 500, random_triangles(0.8)},
-            {"slivers", 300, slivers},              {"degenerate", 300, degenerate},
-            {"flat", 400, flat},                    {"coincident", 400, coincident},
-            {"huge and tiny", 1000, huge_and_tiny}, {"all in one place", 50, one_place}};
+    return {{"one", 1, random_triangles(0.8)},
+            {"two", 2, random_triangles(0.8)},
+            {"five", 5, random_triangles(0.8)},
+            {"few", 60, random_triangles(0.5)},
+            {"many", 2000, random_triangles(0.1)},
+            {"overlapping", 500, random_triangles(0.8)},
+            {"slivers", 300, slivers},
+            {"degenerate", 300, degenerate},
+            {"flat", 400, flat},
+            {"coincident", 400, coincident},
+            {"huge and tiny", 1000, huge_and_tiny},
+            {"all in one place", 50, one_place}};
 }
 
 /// Rays of every sort at the triangles: random, along axes with components of either zero, from a triangle's own
@@ -228,7 +240,9 @@ std::vector<Soup> soups() {
 std::vector<gpu::RayInput> rays_at(const Scene& scene, Random& random, std::size_t count) {
     std::vector<gpu::RayInput> rays;
     const auto pick = [&] { return std::uniform_int_distribution<std::size_t>(0, scene.triangles.size() - 1)(random); };
-    const auto corner = [&](std::size_t triangle, int c) { return scene.positions[scene.triangles[triangle].vertex[c]]; };
+    const auto corner = [&](std::size_t triangle, int c) {
+        return scene.positions[scene.triangles[triangle].vertex[c]];
+    };
     while (rays.size() < count) {
         const std::size_t triangle = pick();
         const glm::dvec3 a = corner(triangle, 0), b = corner(triangle, 1), c = corner(triangle, 2);
@@ -263,7 +277,7 @@ std::vector<gpu::RayInput> rays_at(const Scene& scene, Random& random, std::size
             }
             case 5: direction = (b - a) + uniform(random, -1.0, 1.0) * (c - a); break;  // parallel, from elsewhere
             case 6: target = corner(triangle, int(rays.size() / 8 % 3)); break;         // at a vertex
-            case 7: target = a + u * (b - a); break;                                     // at an edge
+            case 7: target = a + u * (b - a); break;                                    // at an edge
         }
         if (direction == glm::dvec3(0.0)) direction = target - origin;
         if (!(glm::length(direction) > 1e-9)) direction = {0.0, 0.0, 1.0};
@@ -288,17 +302,19 @@ TEST_F(Trace, FindsTheNearestHitThatAllTrianglesHave) {
         for (std::size_t i = 0; i < rays.size(); ++i) {
             ASSERT_NE(outputs[i].found, found_unfinished) << "ray " << i;
             const Answer got{outputs[i].found == found_hit, outputs[i].t, outputs[i].triangle};
-            const auto exact = reference::nearest_hit(scene, {glm::dvec3(rays[i].origin), glm::dvec3(rays[i].direction)});
+            const auto exact =
+                reference::nearest_hit(scene, {glm::dvec3(rays[i].origin), glm::dvec3(rays[i].direction)});
             const Answer want = exact ? Answer{true, exact->t, exact->triangle} : Answer{};
             const Answer other = embree.nearest(rays[i]);
             const auto ray_text = [&] {
-                return fmt::format("ray {} from ({:.9g}, {:.9g}, {:.9g}) along ({:.9g}, {:.9g}, {:.9g})", i, rays[i].origin.x,
-                                   rays[i].origin.y, rays[i].origin.z, rays[i].direction.x, rays[i].direction.y,
-                                   rays[i].direction.z);
+                return fmt::format("ray {} from ({:.9g}, {:.9g}, {:.9g}) along ({:.9g}, {:.9g}, {:.9g})", i,
+                                   rays[i].origin.x, rays[i].origin.y, rays[i].origin.z, rays[i].direction.x,
+                                   rays[i].direction.y, rays[i].direction.z);
             };
             ASSERT_TRUE(agree(flat, scene, rays[i], got, want, undecided))
                 << ray_text() << ": got " << text(got) << ", exact " << text(want) << ", Embree " << text(other)
-                << "; distance to edges " << distance_to_edges(scene, (got.hit && (!want.hit || got.t < want.t) ? got : want).triangle, rays[i]);
+                << "; distance to edges "
+                << distance_to_edges(scene, (got.hit && (!want.hit || got.t < want.t) ? got : want).triangle, rays[i]);
             ASSERT_TRUE(agree(flat, scene, rays[i], got, other, undecided_by_embree))
                 << ray_text() << ": got " << text(got) << ", Embree " << text(other) << ", exact " << text(want);
             if (!got.hit) continue;
@@ -307,11 +323,12 @@ TEST_F(Trace, FindsTheNearestHitThatAllTrianglesHave) {
             const gpu::TriangleGeometry& g = flat.triangles[got.triangle];
             const glm::dvec3 point = glm::dvec3(g.v0) + double(outputs[i].barycentric.x) * glm::dvec3(g.e1) +
                                      double(outputs[i].barycentric.y) * glm::dvec3(g.e2);
-            const double off = glm::length(glm::cross(point - glm::dvec3(rays[i].origin), glm::dvec3(rays[i].direction)));
+            const double off =
+                glm::length(glm::cross(point - glm::dvec3(rays[i].origin), glm::dvec3(rays[i].direction)));
             ASSERT_LT(off, 2.0 * t_bound(flat, got.triangle, rays[i], got.t) + 1e-6) << ray_text() << ": " << text(got);
         }
         EXPECT_GT(hits, rays.size() / 20) << "too few hits to mean anything";
-        // A quarter of the rays aim at vertices and edges, and a quarter lie in planes; of the others few come near one.
+        // Half of the rays aim at vertices and edges or lie in planes; of the others few come near one.
         EXPECT_LT(undecided, rays.size() / 3);
         RecordProperty(soup.name + " undecided", int(undecided));
     }
@@ -338,8 +355,9 @@ TEST_F(Trace, ClosedMeshesLetNothingOut) {
         p = glm::dvec3(0.6 * p.x - 0.8 * p.y, 0.8 * p.x + 0.6 * p.y, p.z);
         p = glm::dvec3(p.x, 0.28 * p.y - 0.96 * p.z, 0.96 * p.y + 0.28 * p.z);
     }
-    for (const auto& [name, made] : {std::pair("icosphere of 1280 triangles", sphere(3)), std::pair("icosphere of 20480 triangles", sphere(5)),
-                                     std::pair("cube", cube), std::pair("turned cube", turned)}) {
+    for (const auto& [name, made] :
+         {std::pair("icosphere of 1280 triangles", sphere(3)), std::pair("icosphere of 20480 triangles", sphere(5)),
+          std::pair("cube", cube), std::pair("turned cube", turned)}) {
         const FlatScene flat = flatten(made);
         const Scene scene = as_uploaded(flat);
         Random random(11);
@@ -366,13 +384,15 @@ TEST_F(Trace, ClosedMeshesLetNothingOut) {
             if (outputs[i].found == found_hit) continue;
             ++by_sort[i % 4];
             if (escaped++ == 0) {
-                first = fmt::format("first: ray {} of sort {} from ({:.9g}, {:.9g}, {:.9g}) along ({:.9g}, {:.9g}, {:.9g})", i,
-                                    i % 4, rays[i].origin.x, rays[i].origin.y, rays[i].origin.z, rays[i].direction.x,
-                                    rays[i].direction.y, rays[i].direction.z);
+                first =
+                    fmt::format("first: ray {} of sort {} from ({:.9g}, {:.9g}, {:.9g}) along ({:.9g}, {:.9g}, {:.9g})",
+                                i, i % 4, rays[i].origin.x, rays[i].origin.y, rays[i].origin.z, rays[i].direction.x,
+                                rays[i].direction.y, rays[i].direction.z);
             }
         }
-        EXPECT_LE(escaped, 2u) << name << ", of " << rays.size() << " rays (" << by_sort[0] << " random, " << by_sort[1] << " at vertices, "
-                                << by_sort[2] << " at middles of edges, " << by_sort[3] << " at edges); " << first;
+        EXPECT_LE(escaped, 2u) << name << ", of " << rays.size() << " rays (" << by_sort[0] << " random, " << by_sort[1]
+                               << " at vertices, " << by_sort[2] << " at middles of edges, " << by_sort[3]
+                               << " at edges); " << first;
         EXPECT_LT(longest, 500) << name << ": steps of the longest ray";
     }
 }
@@ -390,7 +410,8 @@ TEST_F(Trace, OutOfStepsSaysSo) {
     probe.input(PROBE_INPUT, rays);
     probe.output<gpu::RayOutput>(PROBE_OUTPUT, rays.size());
     const auto run = [&](std::uint32_t steps) {
-        probe.run(rays.size(), {.iteration = 0, .round = 0, .last_round = 0, .offset = steps, .count = std::uint32_t(rays.size())});
+        probe.run(rays.size(),
+                  {.iteration = 0, .round = 0, .last_round = 0, .offset = steps, .count = std::uint32_t(rays.size())});
         return probe.result<gpu::RayOutput>(PROBE_OUTPUT, rays.size());
     };
     const auto whole = run(step_budget);

@@ -50,7 +50,8 @@ std::optional<Wanted> decide_cppm(const State& state, const Settings& settings) 
         if (std::abs(p - settings.significance) < 1e-5) return std::nullopt;
     }
     const reference::TestParameters parameters{settings.k, settings.beta, settings.significance};
-    const auto d = reference::cppm_update(state.tally, cells, double(state.pixel.total) + state.found, state.pixel.batch, parameters);
+    const auto d = reference::cppm_update(state.tally, cells, double(state.pixel.total) + state.found,
+                                          state.pixel.batch, parameters);
     return Wanted{d.area_factor, d.batch_factor, d.clear, d.clear ? 0.0 : double(state.pixel.count)};
 }
 
@@ -68,10 +69,13 @@ std::optional<Wanted> decide_sppm_kz(const State& state, const Settings& setting
 const std::map<std::string, Rule> rules = {{"cppm", decide_cppm}, {"sppm", decide_sppm}, {"sppm-kz", decide_sppm_kz}};
 
 /// Tested against the reference by EstimatorUpdate and AppmUpdate of tests/statistical.
-const std::set<std::string> statistical = {"appm", "cppm-lf", "cppm-gof", "cppm-fold", "cppm-null", "ftest", "ftest-fold"};
+const std::set<std::string> statistical = {"appm",      "cppm-lf", "cppm-gof",  "cppm-fold",
+                                           "cppm-null", "ftest",   "ftest-fold"};
 
 State random_state(std::mt19937& random, const Settings& settings, bool whole_count) {
-    const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+    const auto uniform = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
     State state{};
     state.pixel.radius2 = float(std::pow(10.0, uniform(-9.0, 0.0)));
     state.pixel.seeded = random() % 8 > 0 ? 1 : 0;
@@ -130,13 +134,15 @@ TEST_P(Update, DecidesAsTheReference) {
             pixel_states.push_back(state.pixel);
             gathered.push_back({glm::vec3(0.0f), state.found});
             hits.push_back({glm::vec3(0.0f), diffuse ? HIT_DIFFUSE : HIT_NONE});
-            for (std::size_t bin = 0; !tally.empty() && bin < state.tally.size(); ++bin) tally[bin * pixels + i] = state.tally[bin];
+            for (std::size_t bin = 0; !tally.empty() && bin < state.tally.size(); ++bin)
+                tally[bin * pixels + i] = state.tally[bin];
         }
         rig.integrator.buffer(BIND_PIXELS).upload(pixel_states);
         rig.integrator.buffer(BIND_GATHERED).upload(gathered);
         rig.integrator.buffer(BIND_HIT_POSITION).upload(hits);
         rig.integrator.buffer(BIND_TALLY).upload(tally);
-        rig.integrator.run_kernel("update", pixels, {.iteration = 0, .round = 0, .last_round = 1, .offset = 0, .count = 0});
+        rig.integrator.run_kernel("update", pixels,
+                                  {.iteration = 0, .round = 0, .last_round = 1, .offset = 0, .count = 0});
         const auto after = rig.all<gpu::PixelState>(BIND_PIXELS);
         const auto tally_after = rig.all<std::uint32_t>(BIND_TALLY);
 
@@ -146,9 +152,10 @@ TEST_P(Update, DecidesAsTheReference) {
             const State& state = states[i];
             const gpu::PixelState& got = after[i];
             const auto line = [&] {
-                return fmt::format("pixel {}: found {}, before: radius^2 {:.9g}, count {}, total {}, batch {}; tally {}", i, state.found,
-                                   state.pixel.radius2, state.pixel.count, state.pixel.total, state.pixel.batch,
-                                   testing::PrintToString(state.tally));
+                return fmt::format(
+                    "pixel {}: found {}, before: radius^2 {:.9g}, count {}, total {}, batch {}; tally {}", i,
+                    state.found, state.pixel.radius2, state.pixel.count, state.pixel.total, state.pixel.batch,
+                    testing::PrintToString(state.tally));
             };
             if (state.pixel.radius2 == 0.0f) {
                 ASSERT_EQ(got.radius2, 0.0f) << line();
@@ -161,7 +168,8 @@ TEST_P(Update, DecidesAsTheReference) {
                 continue;
             }
             if (row.statistic == Statistic::tally) ++factors[want->area_factor];
-            ASSERT_NEAR(got.radius2, state.pixel.radius2 * want->area_factor, 1e-6 * state.pixel.radius2) << line() << ", factor " << want->area_factor;
+            ASSERT_NEAR(got.radius2, state.pixel.radius2 * want->area_factor, 1e-6 * state.pixel.radius2)
+                << line() << ", factor " << want->area_factor;
             ASSERT_NEAR(got.batch, state.pixel.batch * want->batch_factor, 1e-6 * got.batch) << line();
             ASSERT_NEAR(got.count, want->count, 1e-6 * want->count) << line();
             ASSERT_EQ(got.rejections, state.pixel.rejections + (want->clear ? 1 : 0)) << line();
@@ -171,7 +179,8 @@ TEST_P(Update, DecidesAsTheReference) {
             if (row.statistic != Statistic::tally) continue;
             ASSERT_EQ(got.total, want->clear ? 0 : state.pixel.total + state.found) << line();
             for (std::size_t bin = 0; bin < state.tally.size(); ++bin) {
-                ASSERT_EQ(tally_after[bin * pixels + i], want->clear ? 0 : state.tally[bin]) << line() << ", bin " << bin;
+                ASSERT_EQ(tally_after[bin * pixels + i], want->clear ? 0 : state.tally[bin])
+                    << line() << ", bin " << bin;
             }
         }
         EXPECT_LT(undecided, pixels / 500);
@@ -211,9 +220,12 @@ protected:
 TEST_F(FilmSum, AddsTheEstimateWithTheRadiusBeforeTheUpdate) {
     Rig rig(bare_room(0.5f), settings(size));
     std::mt19937 random(18);
-    const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+    const auto uniform = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
     const auto color = [&](double low, double high) {
-        return glm::vec3(std::pow(10.0, uniform(low, high)), std::pow(10.0, uniform(low, high)), std::pow(10.0, uniform(low, high)));
+        return glm::vec3(std::pow(10.0, uniform(low, high)), std::pow(10.0, uniform(low, high)),
+                         std::pow(10.0, uniform(low, high)));
     };
     std::vector<gpu::Film> films;
     std::vector<gpu::HitPosition> hits;
@@ -230,14 +242,18 @@ TEST_F(FilmSum, AddsTheEstimateWithTheRadiusBeforeTheUpdate) {
         emissions.push_back({i % 3 == 0 ? color(-2.0, 3.0) : glm::vec3(0.0f), 0.0f});
         gathered.push_back({color(-6.0, 2.0), 9});
         if (i % 1000 == 7) {
-            gathered.back().flux[int(i % 3)] = i % 2 == 0 ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
+            gathered.back().flux[int(i % 3)] =
+                i % 2 == 0 ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
         }
         states[i].radius2 = float(std::pow(10.0, uniform(-10.0, 0.0)));
     }
     std::uint32_t invalid = 0;
     for (std::size_t i = 0; i < rig.pixels(); ++i) {
         const glm::vec3 flux = gathered[i].flux;
-        invalid += hits[i].state == HIT_DIFFUSE && !(std::isfinite(flux.x) && std::isfinite(flux.y) && std::isfinite(flux.z)) ? 1 : 0;
+        invalid +=
+            hits[i].state == HIT_DIFFUSE && !(std::isfinite(flux.x) && std::isfinite(flux.y) && std::isfinite(flux.z))
+                ? 1
+                : 0;
     }
     rig.integrator.buffer(BIND_FILM).upload(films);
     rig.integrator.buffer(BIND_HIT_POSITION).upload(hits);
@@ -245,30 +261,36 @@ TEST_F(FilmSum, AddsTheEstimateWithTheRadiusBeforeTheUpdate) {
     rig.integrator.buffer(BIND_HIT_EMISSION).upload(emissions);
     rig.integrator.buffer(BIND_GATHERED).upload(gathered);
     rig.integrator.buffer(BIND_PIXELS).upload(states);
-    rig.integrator.run_kernel("update", rig.pixels(), {.iteration = 0, .round = 0, .last_round = 1, .offset = 1, .count = 0});
+    rig.integrator.run_kernel("update", rig.pixels(),
+                              {.iteration = 0, .round = 0, .last_round = 1, .offset = 1, .count = 0});
     const auto after = rig.all<gpu::Film>(BIND_FILM);
     const auto pixels = rig.all<gpu::PixelState>(BIND_PIXELS);
     for (std::size_t i = 0; i < rig.pixels(); ++i) {
         const bool diffuse = hits[i].state == HIT_DIFFUSE;
-        const bool finite = !diffuse || (std::isfinite(gathered[i].flux.x) && std::isfinite(gathered[i].flux.y) && std::isfinite(gathered[i].flux.z));
+        const bool finite = !diffuse || (std::isfinite(gathered[i].flux.x) && std::isfinite(gathered[i].flux.y) &&
+                                         std::isfinite(gathered[i].flux.z));
         for (int c = 0; c < 3; ++c) {
             const double before = double(films[i].sum[c]) + double(films[i].low[c]);
             double estimate = emissions[i].emission[c];
             if (diffuse) {
-                estimate += double(weights[i].weight[c]) * gathered[i].flux[c] / (std::numbers::pi * double(states[i].radius2) * rig.settings.photons);
+                estimate += double(weights[i].weight[c]) * gathered[i].flux[c] /
+                            (std::numbers::pi * double(states[i].radius2) * rig.settings.photons);
             }
             if (!finite) estimate = 0.0;
             // The estimate is a product of floats; the sum adds two roundings of the low part.
-            ASSERT_NEAR(double(after[i].sum[c]) + double(after[i].low[c]), before + estimate, 1e-6 * estimate + 1e-13 * (before + estimate))
+            ASSERT_NEAR(double(after[i].sum[c]) + double(after[i].low[c]), before + estimate,
+                        1e-6 * estimate + 1e-13 * (before + estimate))
                 << "pixel " << i << " channel " << c << ": " << before << " + " << estimate;
         }
-        if (diffuse) ++histogram[std::clamp(int(std::floor(std::log2(double(pixels[i].radius2)))) + 48, 0, RADIUS_BINS - 1)];
+        if (diffuse)
+            ++histogram[std::clamp(int(std::floor(std::log2(double(pixels[i].radius2)))) + 48, 0, RADIUS_BINS - 1)];
     }
     const gpu::Status status = rig.status();
     EXPECT_GT(invalid, 50u);
     EXPECT_EQ(status.invalid, invalid) << "contributions that are not finite";
     std::uint32_t misplaced = 0;
-    for (int bin = 0; bin < RADIUS_BINS; ++bin) misplaced += std::uint32_t(std::abs(std::int64_t(status.radius_histogram[bin]) - std::int64_t(histogram[bin])));
+    for (int bin = 0; bin < RADIUS_BINS; ++bin)
+        misplaced += std::uint32_t(std::abs(std::int64_t(status.radius_histogram[bin]) - std::int64_t(histogram[bin])));
     EXPECT_LE(misplaced, 10u) << "radii in other bins of the histogram; a few may lie on a boundary";
 }
 
@@ -291,12 +313,13 @@ TEST_F(FilmSum, ManyAdditionsDoNotStagnate) {
     bindings.bind(BIND_PARAMS, parameters);
     std::map<std::uint32_t, Buffer> buffers;
     const auto add = [&](std::uint32_t binding, std::uint64_t bytes) -> Buffer& {
-        Buffer& buffer = buffers.emplace(binding, Buffer(plain_device(), "film test", bytes, Buffer::Kind::storage)).first->second;
+        Buffer& buffer =
+            buffers.emplace(binding, Buffer(plain_device(), "film test", bytes, Buffer::Kind::storage)).first->second;
         bindings.bind(binding, buffer);
         return buffer;
     };
-    for (const std::uint32_t binding : {BIND_STATUS, BIND_HIT_POSITION, BIND_HIT_WEIGHT, BIND_GATHERED, BIND_PIXELS, BIND_TALLY,
-                                        BIND_MOMENTS, BIND_QUANTILES, BIND_FILM}) {
+    for (const std::uint32_t binding : {BIND_STATUS, BIND_HIT_POSITION, BIND_HIT_WEIGHT, BIND_GATHERED, BIND_PIXELS,
+                                        BIND_TALLY, BIND_MOMENTS, BIND_QUANTILES, BIND_FILM}) {
         add(binding, 4096);
     }
     Buffer& emission = add(BIND_HIT_EMISSION, 4096);
@@ -305,12 +328,14 @@ TEST_F(FilmSum, ManyAdditionsDoNotStagnate) {
         for (const float value : values) records.push_back({glm::vec3(value, 2.0f * value, 0.7f * value), 0.0f});
         emission.upload(records);
     };
-    const Kernel kernel(plain_device(), bindings, "update", kernel_module("update").spirv,
-                        {{SPEC_WORKGROUP, 64}, {SPEC_ESTIMATOR, find_estimator("sppm").id}, {SPEC_RINGS, 2}, {SPEC_SECTORS, 6}});
+    const Kernel kernel(
+        plain_device(), bindings, "update", kernel_module("update").spirv,
+        {{SPEC_WORKGROUP, 64}, {SPEC_ESTIMATOR, find_estimator("sppm").id}, {SPEC_RINGS, 2}, {SPEC_SECTORS, 6}});
     Commands commands(plain_device(), bindings, 1);
     const auto run = [&](std::uint64_t launches) {
         commands.begin();
-        for (std::uint64_t i = 0; i < launches; ++i) commands.launch(kernel, count, {.iteration = 0, .round = 0, .last_round = 1, .offset = 0, .count = 0});
+        for (std::uint64_t i = 0; i < launches; ++i)
+            commands.launch(kernel, count, {.iteration = 0, .round = 0, .last_round = 1, .offset = 0, .count = 0});
         commands.finish();
     };
     set(first);
@@ -323,7 +348,8 @@ TEST_F(FilmSum, ManyAdditionsDoNotStagnate) {
             const float factor = c == 0 ? 1.0f : c == 1 ? 2.0f : 0.7f;
             const double want = double(factor * first[i]) + double(additions - 1) * double(factor * then[i]);
             const double got = double(films[i].sum[c]) + double(films[i].low[c]);
-            EXPECT_NEAR(got, want, additions * error_of_one * want) << "pixel " << i << " channel " << c << ", sum " << films[i].sum[c] << ", low " << films[i].low[c];
+            EXPECT_NEAR(got, want, additions * error_of_one * want)
+                << "pixel " << i << " channel " << c << ", sum " << films[i].sum[c] << ", low " << films[i].low[c];
         }
     }
 }

@@ -28,9 +28,12 @@ constexpr std::uint32_t warp_words[] = {
 constexpr std::size_t samples = 200000;
 
 /// Pairs of cosines of the inner and the outer cone: glTF's defaults, wide, narrow, equal, nearly equal, beyond 90 deg.
-const std::vector<std::pair<float, float>> cones = {
-    {1.0f, float(std::cos(pi / 4.0))}, {0.9f, 0.2f},  {float(std::cos(0.02)), float(std::cos(0.03))},
-    {0.7f, 0.7f},                      {0.8f, 0.7999f}, {0.5f, -0.5f}};
+const std::vector<std::pair<float, float>> cones = {{1.0f, float(std::cos(pi / 4.0))},
+                                                    {0.9f, 0.2f},
+                                                    {float(std::cos(0.02)), float(std::cos(0.03))},
+                                                    {0.7f, 0.7f},
+                                                    {0.8f, 0.7999f},
+                                                    {0.5f, -0.5f}};
 const double level = sidak(1e-4, 4 + 6);
 
 class Warp : public GpuTest {
@@ -64,7 +67,7 @@ std::size_t azimuth_bin(float x, float y) {
 TEST_F(Warp, DirectionsDiscsAndTrianglesFollowTheirDensities) {
     const auto outputs = map(random_inputs(4, 0.9f, 0.5f));
     constexpr std::size_t rows = 12;
-    // Rows of equal polar angle for directions: P = sin^2(b) - sin^2(a) for cos / pi, (cos(a) - cos(b)) / 2 on the sphere.
+    // Rows of equal polar angle: P = sin^2(b) - sin^2(a) for cos / pi, (cos(a) - cos(b)) / 2 on the sphere.
     std::vector<double> cosine_density, sphere_density, disc_density;
     for (std::size_t row = 0; row < rows; ++row) {
         const double a = 0.5 * pi * double(row) / rows, b = 0.5 * pi * double(row + 1) / rows;
@@ -125,11 +128,13 @@ TEST_F(Warp, SpotCosinesFollowTheFalloffOfKhrLightsPunctual) {
         for (double& p : probabilities) p /= total;
         std::vector<std::uint64_t> counts(probabilities.size());
         for (const auto& out : outputs) {
-            ASSERT_TRUE(out.spot >= low - 1e-6 && out.spot <= 1.0 + 1e-6) << out.spot << " for cones " << inner << " " << outer;
+            ASSERT_TRUE(out.spot >= low - 1e-6 && out.spot <= 1.0 + 1e-6)
+                << out.spot << " for cones " << inner << " " << outer;
             const auto above = std::upper_bound(edges.begin(), edges.end(), double(out.spot)) - edges.begin();
             ++counts[std::clamp<std::ptrdiff_t>(above - 1, 0, std::ptrdiff_t(counts.size()) - 1)];
         }
-        expect_density(fmt::format("sample_spot_cosine between {} and {}", inner, outer), chi_squared(counts, probabilities), level);
+        expect_density(fmt::format("sample_spot_cosine between {} and {}", inner, outer),
+                       chi_squared(counts, probabilities), level);
     }
 }
 

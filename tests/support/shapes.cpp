@@ -97,7 +97,8 @@ void add_box(Scene& scene, const glm::dvec3& low, const glm::dvec3& high, std::u
     }
 }
 
-void add_sphere(Scene& scene, const glm::dvec3& centre, double radius, int levels, std::uint32_t material, bool smooth) {
+void add_sphere(Scene& scene, const glm::dvec3& centre, double radius, int levels, std::uint32_t material,
+                bool smooth) {
     const double golden = (1.0 + std::sqrt(5.0)) / 2.0;
     std::vector<glm::dvec3> points;
     for (const double one : {-1.0, 1.0}) {
@@ -114,7 +115,8 @@ void add_sphere(Scene& scene, const glm::dvec3& centre, double radius, int level
         for (std::size_t j = i + 1; j < 12; ++j) {
             for (std::size_t k = j + 1; k < 12; ++k) {
                 if (!near(i, j) || !near(j, k) || !near(i, k)) continue;
-                const bool outwards = glm::dot(glm::cross(points[j] - points[i], points[k] - points[i]), points[i]) > 0.0;
+                const bool outwards =
+                    glm::dot(glm::cross(points[j] - points[i], points[k] - points[i]), points[i]) > 0.0;
                 faces.push_back(outwards ? std::array{i, j, k} : std::array{i, k, j});
             }
         }
@@ -129,14 +131,16 @@ void add_sphere(Scene& scene, const glm::dvec3& centre, double radius, int level
         std::vector<std::array<std::size_t, 3>> finer;
         for (const auto& [i, j, k] : faces) {
             const std::size_t a = middle(i, j), b = middle(j, k), c = middle(k, i);
-            for (const auto& face : {std::array{i, a, c}, std::array{a, j, b}, std::array{c, b, k}, std::array{a, b, c}}) {
+            for (const auto& face :
+                 {std::array{i, a, c}, std::array{a, j, b}, std::array{c, b, k}, std::array{a, b, c}}) {
                 finer.push_back(face);
             }
         }
         faces = finer;
     }
     for (const auto& [i, j, k] : faces) {
-        add_triangle(scene, centre + radius * points[i], centre + radius * points[j], centre + radius * points[k], material);
+        add_triangle(scene, centre + radius * points[i], centre + radius * points[j], centre + radius * points[k],
+                     material);
         if (!smooth) continue;
         for (const auto& [corner, point] : {std::pair(3, i), std::pair(2, j), std::pair(1, k)}) {
             scene.normals[scene.normals.size() - corner] = glm::vec3(points[point]);

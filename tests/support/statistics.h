@@ -14,9 +14,9 @@ double sidak(double family, std::size_t tests);
 /// counts are pooled with their neighbours.
 struct ChiSquared {
     double statistic = 0.0;
-    double freedom = 0.0;   // degrees of freedom
-    double p_value = 1.0;   // of a larger statistic
-    std::string worst;      // the bin that adds most: its index, observed and expected counts
+    double freedom = 0.0;  // degrees of freedom
+    double p_value = 1.0;  // of a larger statistic
+    std::string worst;     // the bin that adds most: its index, observed and expected counts
 };
 ChiSquared chi_squared(std::span<const std::uint64_t> observed, std::span<const double> probabilities);
 

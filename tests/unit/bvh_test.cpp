@@ -29,9 +29,9 @@ Corners random_triangles(std::size_t count, float size, std::uint32_t seed) {
 
 /// What a walk over the whole tree meets.
 struct Walk {
-    std::vector<int> times;      // [triangles] leaves that hold it
-    int depth = 0;               // four-wide nodes on the longest path
-    std::uint32_t stack = 0;     // entries that the worst ray needs: siblings wait while the nearest child is entered
+    std::vector<int> times;   // [triangles] leaves that hold it
+    int depth = 0;            // four-wide nodes on the longest path
+    std::uint32_t stack = 0;  // entries that the worst ray needs: siblings wait while the nearest child is entered
     std::size_t leaves = 0;
 };
 
@@ -123,7 +123,8 @@ TEST(Bvh, HoldsFlatThinAndFarTriangles) {
 
 TEST(Bvh, IdenticalTrianglesEndInABoundedDepth) {
     const std::size_t count = 100000;
-    const Walk walk = check(Corners(count, {glm::vec3(0.1f, 0.2f, 0.3f), glm::vec3(0.2f, 0.2f, 0.3f), glm::vec3(0.1f, 0.4f, 0.3f)}));
+    const Walk walk =
+        check(Corners(count, {glm::vec3(0.1f, 0.2f, 0.3f), glm::vec3(0.2f, 0.2f, 0.3f), glm::vec3(0.1f, 0.4f, 0.3f)}));
     // Halves by count: 2^17 > 10^5, so the binary tree has at most 17 levels, and a node waits with three children.
     EXPECT_LE(walk.depth, 17);
     EXPECT_LE(walk.stack, 3u * 17u);
@@ -148,7 +149,8 @@ TEST(Bvh, BuildsTheSameTreeAgain) {
         ASSERT_EQ(again.order, first.order) << "build " << repeat;
         ASSERT_EQ(again.stack, first.stack);
         ASSERT_EQ(again.nodes.size(), first.nodes.size());
-        ASSERT_EQ(std::memcmp(again.nodes.data(), first.nodes.data(), first.nodes.size() * sizeof(gpu::BvhNode)), 0) << "build " << repeat;
+        ASSERT_EQ(std::memcmp(again.nodes.data(), first.nodes.data(), first.nodes.size() * sizeof(gpu::BvhNode)), 0)
+            << "build " << repeat;
     }
 }
 
