@@ -67,7 +67,11 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Expected{"sppm", -2.0 / 3.0, "R^2 ~ n^(alpha-1): variance ~ n^-alpha"},
                     Expected{"sppm-kz", -2.0 / 3.0, "R^2 ~ n^(alpha-1): variance ~ n^-alpha"},
                     Expected{"cppm", -0.9, "most radii stay: variance ~ n^-1, less the false rejections"},
-                    Expected{"ftest-fold", -0.9, "the same"}),
+                    Expected{"cppm-lf", -0.9, "the same"}, Expected{"cppm-gof", -0.9, "the same"},
+                    Expected{"cppm-fold", -0.9, "the same"}, Expected{"ftest", -0.9, "the same"},
+                    Expected{"ftest-fold", -0.9, "the same"},
+                    Expected{"appm", -2.0 / 3.0, "R ~ n^(-1/6) where nothing curves: variance ~ n^(-2/3)"},
+                    Expected{"cppm-null", -0.45, "R^2 ~ n^-0.55 at k 0.8 and beta 1.2: variance ~ n^-0.45"}),
     [](const auto& info) {
         std::string name = info.param.estimator;
         std::replace(name.begin(), name.end(), '-', '_');
