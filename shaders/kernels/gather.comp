@@ -2,8 +2,9 @@
 // One invocation a pixel: sums the photons in its disc with the radius in force before this iteration's photons were
 // looked at, and bins them for the estimator. Reads hits, pixels, grid, sorted photons; writes gathered, tally,
 // cursors. O(photons in the cells that the disc touches). Fails by running out of steps: goes on next round.
-// Acceptance: |y - x| < R strictly (appm looks further for its derivative), and the photon's geometric normal agrees with the pixel's shading normal, both on
-// the side they were seen from; the distance is that in space, the kernel is 1 / (pi R^2), but for appm's.
+// Acceptance: |y - x| < R strictly (appm looks further for its derivative), and the photon's geometric normal agrees
+// with the pixel's shading normal, both on the side they were seen from; the distance is that in space, the kernel is
+// 1 / (pi R^2), but for appm's.
 #include "include/kernel.glsl"
 #include "include/rng.glsl"
 #include "include/sampling.glsl"
