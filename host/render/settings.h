@@ -16,6 +16,8 @@ struct Settings {
     std::uint32_t photons = 65536;          // light paths emitted an iteration, 1..2^24
     std::optional<Extent> size;             // default: 512 on the longer side at the camera's aspect
     std::string camera;                     // name or index; empty: the first
+    double aperture = 0.0;                  // m, diameter of the lens; 0: a pinhole
+    std::optional<double> focus_distance;   // m along the camera's axis, > 0; needed where there is an aperture
     std::uint32_t seed = 1;
     std::uint32_t max_depth = 64;           // bounces of a light path and of an eye path, 1..1024
     std::uint32_t knn = 10;                 // k nearest photons give the starting radius, 2..256

@@ -29,7 +29,6 @@ gpu::SurfaceMaterial surface_of(const Material& material) {
 }
 
 std::optional<std::string> left_out(const Material& material) {
-    if (material.textured) return "its textures";
     switch (kind_of(material)) {
         case SURFACE_MIRROR:
             if (material.metallic < 1.0f) return "its dielectric part";

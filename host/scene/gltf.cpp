@@ -274,7 +274,6 @@ private:
             material.attenuation_distance = float(clamped(distance, FLT_MIN, FLT_MAX, member("attenuationDistance")));
         }
         material.double_sided = source.doubleSided;
-        material.textured = is_textured(source);
         if (source.alphaMode != "OPAQUE") warnings_.add("its alpha mode is ignored, it is opaque", member("alphaMode"));
         return material;
     }

@@ -560,7 +560,6 @@ TEST(Gltf, ReadsEveryFactorOfAMaterial) {
     EXPECT_EQ(m.attenuation_color, glm::vec3(0.5f, 0.6f, 0.7f));
     EXPECT_EQ(m.specular, 0.0f);
     EXPECT_EQ(m.specular_color, glm::vec3(1, 2, 3));
-    EXPECT_FALSE(m.textured);
 }
 
 TEST(Gltf, GivesGltfsDefaultsToAnEmptyMaterialAndToNone) {
@@ -593,19 +592,6 @@ TEST(Gltf, ClampsFactorsOutsideTheirRangeWithOneWarning) {
     EXPECT_EQ(scene.materials.at(0).roughness, 0.0f);
     EXPECT_EQ(scene.materials.at(0).ior, 1.0f);
     EXPECT_ONE_WARNING(scene, "materials[0].metallicFactor = 3", "(and 2 more)", "clamped");
-}
-
-TEST(Gltf, FlagsMaterialsWithTexturesAndNeedsNoImage) {
-    for (const json& material : {
-             json{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}},
-             json{{"normalTexture", {{"index", 0}}}},
-             json{{"extensions", {{"KHR_materials_specular", {{"specularTexture", {{"index", 0}}}}}}}},
-         }) {
-        SCOPED_TRACE(material.dump());
-        const Scene scene = load_material(material);
-        EXPECT_TRUE(scene.materials.at(0).textured);
-        EXPECT_ONE_WARNING(scene, "textures: ignored in 1 of 1 materials");
-    }
 }
 
 TEST(Gltf, WarnsOnceOfAllUnknownExtensions) {
