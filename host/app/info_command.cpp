@@ -113,7 +113,7 @@ std::string json_text(const Scene& scene) {
         json["materials"].push_back({{"name", material.name},
                                      {"triangles", triangles[i]},
                                      {"emission", json_of(material.emission)},
-                                     {"treatment", describe_material(material)}});
+                                     {"treatment", describe_material(scene, material)}});
     }
     json["lights"] = Json::array();
     for (const PunctualLight& light : scene.lights) {
@@ -142,7 +142,7 @@ std::string plain_text(const Scene& scene) {
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& material = scene.materials[i];
         fmt::format_to(out, "  {} '{}', {} triangles: {}\n", i, material.name, triangles[i],
-                       describe_material(material));
+                       describe_material(scene, material));
     }
     fmt::format_to(out, "{} punctual lights\n", scene.lights.size());
     for (const PunctualLight& light : scene.lights) {

@@ -1,22 +1,21 @@
 #include "render/flatten.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <numbers>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <glm/geometric.hpp>
+#include <glm/packing.hpp>
 
+#include "core/error.h"
+#include "render/features.h"
+#include "render/lights.h"
 #include "render/surface.h"
+#include "render/textures.h"
 
 namespace vkcppm {
 namespace {
-
-using std::numbers::pi;
 
 /// Octahedral snorm16x2, as pack_direction of shaders/include/frame.glsl.
 std::uint32_t pack_direction(const glm::vec3& n) {
@@ -85,10 +84,6 @@ void add_triangles(const Scene& scene, FlatScene& flat) {
         shading.material = triangle.material | (is_flat ? SHADING_FLAT : 0u);
         flat.shading.push_back(shading);
 
-        const std::uint32_t kind = flat.materials[triangle.material].kind & ~SURFACE_DOUBLE_SIDED;
-        if (kind == SURFACE_MIRROR) flat.features |= FEATURE_MIRROR;
-        if (kind == SURFACE_DIELECTRIC) flat.features |= FEATURE_DIELECTRIC;
-        if (kind == SURFACE_DIFFUSE && !is_flat) flat.features |= FEATURE_SMOOTH_DIFFUSE;
         for (const glm::vec3& p : corners[source]) {
             flat.low = glm::min(flat.low, p);
             flat.high = glm::max(flat.high, p);
@@ -99,115 +94,66 @@ void add_triangles(const Scene& scene, FlatScene& flat) {
     flat.high += 1e-5f;
 }
 
-double mean(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
-
-/// Lights with `power` set to their flux, in frame units (W times scale^2).
-std::vector<gpu::Light> collect_lights(const Scene& scene, const FlatScene& flat) {
-    std::vector<gpu::Light> lights;
-    for (std::size_t i = 0; i < flat.triangles.size(); ++i) {
-        const gpu::SurfaceMaterial& material = flat.materials[flat.shading[i].material & ~SHADING_FLAT];
-        if (material.emission == glm::vec3(0.0f)) continue;
-        const gpu::TriangleGeometry& triangle = flat.triangles[i];
-        gpu::Light light{};
-        light.kind = LIGHT_TRIANGLE;
-        light.position = triangle.v0;
-        light.e1 = triangle.e1;
-        light.e2 = triangle.e2;
-        light.double_sided = (material.kind & SURFACE_DOUBLE_SIDED) != 0 ? 1 : 0;
-        const double area = 0.5 * glm::length(glm::cross(glm::dvec3(triangle.e1), glm::dvec3(triangle.e2)));
-        light.power = glm::vec3(glm::dvec3(material.emission) * (pi * area * (light.double_sided ? 2.0 : 1.0)));
-        lights.push_back(light);
+glm::vec4 texcoords_of(const Scene& scene, std::uint32_t vertex) {
+    glm::vec4 both(0.0f);
+    for (int set = 0; set < 2; ++set) {
+        if (scene.uv[set].empty()) continue;
+        both[2 * set] = scene.uv[set][vertex].x;
+        both[2 * set + 1] = scene.uv[set][vertex].y;
     }
-    const double scale2 = flat.frame.scale * flat.frame.scale;
-    for (const PunctualLight& source : scene.lights) {
-        gpu::Light light{};
-        const glm::dvec3 intensity(source.intensity);
-        light.position = glm::vec3(flat.frame.point(source.position));
-        light.e1 = glm::vec3(source.direction);
-        switch (source.kind) {
-            case PunctualLight::Kind::point:
-                light.kind = LIGHT_POINT;
-                light.power = glm::vec3(intensity * (4.0 * pi * scale2));
-                break;
-            case PunctualLight::Kind::spot: {
-                light.kind = LIGHT_SPOT;
-                const double inner = std::cos(source.inner_cone), outer = std::cos(source.outer_cone);
-                light.e2 = glm::vec3(inner, outer, 0.0);
-                // Integral of clamp((c - outer) / (inner - outer), 0, 1)^2 over the sphere.
-                light.power = glm::vec3(intensity * (2.0 * pi * scale2 * ((1.0 - inner) + (inner - outer) / 3.0)));
-                break;
-            }
-            case PunctualLight::Kind::directional: {
-                light.kind = LIGHT_DIRECTIONAL;
-                const double radius = flat.radius * 1.001;
-                light.position = glm::vec3(source.direction * (-1.5 * radius));
-                light.e2 = glm::vec3(radius, 0.0, 0.0);
-                light.power = glm::vec3(intensity * (pi * radius * radius));
-                break;
-            }
-        }
-        lights.push_back(light);
-    }
-    std::erase_if(lights, [](const gpu::Light& light) { return !(mean(light.power) > 0.0); });
-    return lights;
+    return both;
 }
 
-/// Alias table (Walker 1974, Vose 1991) in proportion to the mean channel of the power; then `power` becomes flux over
-/// probability: what one path carries.
-void make_alias_table(std::vector<gpu::Light>& lights) {
-    double total = 0.0;
-    for (const auto& light : lights) total += mean(light.power);
-    std::vector<double> share(lights.size());
-    std::vector<std::uint32_t> small, large;
-    for (std::uint32_t i = 0; i < lights.size(); ++i) {
-        const double probability = mean(lights[i].power) / total;
-        share[i] = probability * double(lights.size());
-        lights[i].power = glm::vec3(glm::dvec3(lights[i].power) / probability);
-        lights[i].keep = 1.0f;
-        lights[i].alias_entry = i;
-        (share[i] < 1.0 ? small : large).push_back(i);
-    }
-    while (!small.empty() && !large.empty()) {
-        const std::uint32_t poor = small.back(), rich = large.back();
-        small.pop_back();
-        lights[poor].keep = float(share[poor]);
-        lights[poor].alias_entry = rich;
-        share[rich] -= 1.0 - share[poor];
-        if (share[rich] < 1.0) {
-            large.pop_back();
-            small.push_back(rich);
+/// What the features of the scene read of the vertices, triangle by triangle.
+void add_attributes(const Scene& scene, FlatScene& flat) {
+    const std::uint32_t features = bits_of(flat.features);
+    for (const std::uint32_t source : flat.bvh.order) {
+        const auto& vertex = scene.triangles[source].vertex;
+        if (features & FEATURE_TEXTURES) {
+            for (const std::uint32_t v : vertex) flat.texcoords.push_back(texcoords_of(scene, v));
+        }
+        if (features & FEATURE_VERTEX_COLORS) {
+            std::array<std::uint32_t, 8> words{};
+            for (int c = 0; c < 3; ++c) {
+                const glm::vec4& color = scene.colors[vertex[c]];
+                words[2 * c] = glm::packHalf2x16(glm::vec2(color.r, color.g));
+                words[2 * c + 1] = glm::packHalf2x16(glm::vec2(color.b, color.a));
+            }
+            flat.vertex_colors.emplace_back(words[0], words[1], words[2], words[3]);
+            flat.vertex_colors.emplace_back(words[4], words[5], words[6], words[7]);
+        }
+        if (features & FEATURE_TANGENTS) {
+            glm::uvec4 packed(0);
+            for (int c = 0; c < 3; ++c) {
+                const glm::vec4& tangent = scene.tangents[vertex[c]];
+                if (tangent.w == 0.0f) continue;
+                packed[c] = pack_direction(glm::vec3(tangent));
+                packed.w |= 1u << c | (tangent.w < 0.0f ? 8u << c : 0u);
+            }
+            flat.tangents.push_back(packed);
         }
     }
-}
-
-/// One line for each kind of thing that is left out, with the materials' names.
-std::vector<std::string> omissions(const Scene& scene) {
-    std::vector<bool> used(scene.materials.size(), false);
-    for (const Triangle& triangle : scene.triangles) used[triangle.material] = true;
-    std::map<std::string, std::vector<std::string>> by_kind;
-    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-        if (!used[i]) continue;
-        if (const auto missing = left_out(scene.materials[i])) by_kind[*missing].push_back(scene.materials[i].name);
-    }
-    std::vector<std::string> lines;
-    for (const auto& [missing, names] : by_kind) {
-        const std::string more = names.size() > 3 ? fmt::format(" and {} more", names.size() - 3) : "";
-        const std::vector<std::string> shown(names.begin(), names.begin() + std::min<std::size_t>(3, names.size()));
-        lines.push_back(fmt::format("left out of material '{}'{}: {}", fmt::join(shown, "', '"), more, missing));
-    }
-    return lines;
 }
 
 }  // namespace
 
 FlatScene flatten(const Scene& scene) {
     FlatScene flat;
+    if (scene.materials.size() >= PATH_NO_MEDIUM) {
+        throw Error(ExitCode::bad_scene, fmt::format("{}: {} materials, the limit is {}", scene.file.string(),
+                                                     scene.materials.size(), PATH_NO_MEDIUM - 1));
+    }
     flat.frame = make_frame(scene);
-    for (const Material& material : scene.materials) flat.materials.push_back(surface_of(material));
+    TextureTable textures(scene);
+    for (const Material& material : scene.materials) {
+        flat.materials.push_back(surface_of(scene, material, flat.frame.scale, textures));
+    }
+    flat.textures = textures.lookups();
+    flat.texels = textures.texels();
     add_triangles(scene, flat);
-    flat.lights = collect_lights(scene, flat);
-    make_alias_table(flat.lights);
-    flat.warnings = omissions(scene);
+    add_lights(scene, flat);
+    flat.features = features_of(scene, flat);
+    add_attributes(scene, flat);
     if (flat.lights.empty()) flat.warnings.push_back("the scene has no light: the picture is black");
     if (scene.triangles.empty()) flat.warnings.push_back("the scene has no triangles: the picture is black");
     return flat;

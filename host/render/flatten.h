@@ -5,9 +5,12 @@
 #include <string>
 #include <vector>
 
+#include <glm/vec4.hpp>
+
 #include "render/bvh.h"
 #include "render/frame.h"
 #include "scene/scene.h"
+#include "render/feature.h"
 #include "shared/types.h"
 
 namespace vkcppm {
@@ -15,18 +18,27 @@ namespace vkcppm {
 struct FlatScene {
     SceneFrame frame;
     Bvh bvh;
-    std::vector<gpu::TriangleGeometry> triangles;  // in leaf order
-    std::vector<gpu::TriangleShading> shading;     // in leaf order
+    std::vector<gpu::TriangleGeometry> triangles;  // in leaf order, as all that is listed by triangle
+    std::vector<gpu::TriangleShading> shading;
+    std::vector<glm::vec4> texcoords;              // [3 x triangles] both sets of a corner, where there are textures
+    std::vector<glm::uvec4> vertex_colors;         // [2 x triangles] half floats, where there are any
+    std::vector<glm::uvec4> tangents;              // [triangles] where there are normal maps
     std::vector<gpu::SurfaceMaterial> materials;
+    std::vector<gpu::TextureLookup> textures;
+    std::vector<std::uint32_t> texels;             // of all images, a word each
     std::vector<gpu::Light> lights;                // alias table; empty where nothing emits
-    std::uint32_t features = 0;                    // FEATURE_* that any triangle's material has
+    Extent environment_size;
+    std::vector<glm::vec4> environment;            // [pixels] radiance, keep of its alias table
+    std::vector<std::uint32_t> environment_alias;  // [pixels]
+    std::vector<Feature> features;                 // what the scene asks of the kernels
     double area = 0.0;                             // of all triangles, frame units squared
     double radius = 0.0;                           // of the bounding sphere about the origin, frame units
     glm::vec3 low{0.0f};                           // bounds of the triangles, padded
     glm::vec3 high{0.0f};
-    std::vector<std::string> warnings;             // what is left out, one line each
+    std::vector<std::string> warnings;             // one line each
 };
 
+/// Throws Error(bad_scene) where a count is beyond what the kernels can index.
 FlatScene flatten(const Scene& scene);
 
 }  // namespace vkcppm

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "render/estimators.h"
+#include "render/features.h"
 #include "render/kernels.h"
 #include "shared/bindings.h"
 
@@ -59,6 +60,7 @@ void set_test(gpu::Params& params, const EstimatorRow& estimator, const Settings
 Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings)
     : device_(device), bindings_(device), commands_(device, bindings_, timed_launches) {
     const EstimatorRow& estimator = find_estimator(settings.estimator);
+    const std::uint32_t features = bits_of(scene.features) | bits_of(features_of(settings));
     scale_ = scene.frame.scale;
     pixels_ = settings.size->pixels();
     for (const Pass pass : {Pass::eye, Pass::photon, Pass::knn, Pass::gather}) rounds_[pass] = 1;
@@ -75,6 +77,9 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     params_.photon_capacity = photons_per_lane * first_photon_capacity;
     params_.max_depth = settings.max_depth;
     params_.light_count = std::uint32_t(scene.lights.size());
+    params_.environment = {scene.environment_size.width, scene.environment_size.height};
+    params_.lens_radius = float(0.5 * settings.aperture * scale_);
+    params_.focus_distance = float(settings.focus_distance.value_or(1.0) * scale_);
     params_.step_budget = device.step_budget();
     params_.knn = settings.knn;
     params_.radius_cap = float(radius_cap * std::max(scene.radius, 1e-3));
@@ -102,6 +107,13 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     upload(BIND_SHADING, "shading", scene.shading, Kind::uint_texels);
     upload(BIND_MATERIALS, "materials", scene.materials, Kind::uint_texels);
     upload(BIND_LIGHTS, "lights", scene.lights, Kind::uint_texels);
+    upload(BIND_TEXCOORDS, "texture coordinates", scene.texcoords, Kind::float_texels);
+    upload(BIND_VERTEX_COLORS, "vertex colours", scene.vertex_colors, Kind::uint_texels);
+    upload(BIND_TANGENTS, "tangents", scene.tangents, Kind::uint_texels);
+    upload(BIND_TEXTURES, "textures", scene.textures, Kind::uint_texels);
+    upload(BIND_TEXELS, "texels", scene.texels, Kind::word_texels);
+    upload(BIND_ENVIRONMENT, "environment", scene.environment, Kind::float_texels);
+    upload(BIND_ENVIRONMENT_ALIAS, "environment alias table", scene.environment_alias, Kind::word_texels);
     allocate(BIND_PARAMS, "parameters", sizeof(gpu::Params), Kind::uniform);
     allocate(BIND_STATUS, "status", sizeof(gpu::Status), Kind::storage);
     allocate(BIND_GRID, "grid", sizeof(gpu::Grid), Kind::storage);
@@ -118,6 +130,8 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
         f_thresholds(estimator, settings.rings, settings.sectors, settings.significance);
     upload(BIND_QUANTILES, "quantiles", quantiles, Kind::storage);
     allocate(BIND_AOVS, "aovs", settings.aovs ? pixels_ * sizeof(gpu::Aovs) : 0, Kind::storage);
+    const bool glossy = (features & FEATURE_GLOSS) != 0;
+    allocate(BIND_HIT_SURFACE, "hit surfaces", glossy ? pixels_ * sizeof(gpu::HitSurface) : 0, Kind::storage);
     allocate(BIND_FILM, "film", pixels_ * sizeof(gpu::Film), Kind::storage);
     allocate(BIND_CURSOR, "cursors", pixels_ * sizeof(gpu::Cursor), Kind::storage);
     allocate(BIND_NEAREST, "nearest", settings.knn * pixels_ * sizeof(float), Kind::storage);
@@ -132,7 +146,7 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     gpu::PixelState pixel{};
     pixel.batch = float(settings.knn);  // B_1 = k_NN
     buffer(BIND_PIXELS).upload(std::vector<gpu::PixelState>(pixels_, pixel));
-    compile(settings, scene);
+    compile(settings, scene.bvh.stack, features);
 }
 
 void Integrator::allocate(std::uint32_t binding, const std::string& name, std::uint64_t bytes, Buffer::Kind kind) {
@@ -156,10 +170,9 @@ void Integrator::allocate_photons() {
     buffer(BIND_PARAMS).upload_value(params_);
 }
 
-void Integrator::compile(const Settings& settings, const FlatScene& scene) {
-    const std::uint32_t features = scene.features | (settings.aovs ? FEATURE_AOVS : 0u);
+void Integrator::compile(const Settings& settings, std::uint32_t stack, std::uint32_t features) {
     const Specialization specialization = {
-        {SPEC_WORKGROUP, workgroup},       {SPEC_STACK, scene.bvh.stack},
+        {SPEC_WORKGROUP, workgroup},       {SPEC_STACK, stack},
         {SPEC_ESTIMATOR, find_estimator(settings.estimator).id},
         {SPEC_RINGS, settings.rings},      {SPEC_SECTORS, settings.sectors},
         {SPEC_FEATURES, features},         {SPEC_DIGIT_BITS, digit_bits_},

@@ -1,68 +1,140 @@
 #include "render/surface.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace vkcppm {
 namespace {
 
-std::string text(const glm::vec3& v) { return fmt::format("({:g}, {:g}, {:g})", v.x, v.y, v.z); }
+constexpr float infinite_ior = 1e8f;
 
-std::uint32_t kind_of(const Material& material) {
-    // Of a mixture the larger part stands for the whole; left_out() says so.
-    if (material.transmission * (1.0f - material.metallic) > 0.5f && material.thickness > 0.0f) return SURFACE_DIELECTRIC;
-    if (material.metallic > 0.5f && material.roughness == 0.0f) return SURFACE_MIRROR;
-    return SURFACE_DIFFUSE;
+const glm::vec3 black(0.0f), white(1.0f);
+
+std::string text(const glm::vec3& v) {
+    return v.x == v.y && v.y == v.z ? fmt::format("{:g}", v.x) : fmt::format("({:g}, {:g}, {:g})", v.x, v.y, v.z);
+}
+
+bool partly_there(const Scene& scene, const Material& material) {
+    if (material.alpha == Material::Alpha::opaque) return false;
+    const bool image = material.base_color_texture && has_alpha(scene.images.at(material.base_color_texture->image));
+    const bool vertices = std::any_of(scene.colors.begin(), scene.colors.end(), [](const glm::vec4& c) { return c.a < 1.0f; });
+    return material.opacity < 1.0f || image || vertices;
+}
+
+struct NamedTexture {
+    const char* name;
+    const std::optional<Texture>* texture;
+    bool srgb;
+};
+
+/// In the order of TEXTURE_*.
+std::array<NamedTexture, TEXTURE_COUNT> textures_of(const Material& m) {
+    return {{{"base colour", &m.base_color_texture, true},
+             {"metallic-roughness", &m.metallic_roughness_texture, false},
+             {"normal", &m.normal_texture, false},
+             {"emissive", &m.emissive_texture, true},
+             {"transmission", &m.transmission_texture, false},
+             {"specular", &m.specular_texture, false},
+             {"specular colour", &m.specular_color_texture, true},
+             {"clearcoat", &m.clearcoat_texture, false},
+             {"clearcoat roughness", &m.clearcoat_roughness_texture, false},
+             {"clearcoat normal", &m.clearcoat_normal_texture, false}}};
 }
 
 }  // namespace
 
-gpu::SurfaceMaterial surface_of(const Material& material) {
+SurfaceTraits traits_of(const Scene& scene, const Material& m) {
+    SurfaceTraits t;
+    t.unlit = m.unlit;
+    t.alpha = partly_there(scene, m);
+    t.emits = m.emission != black;
+    const auto textures = textures_of(m);
+    t.textured = std::any_of(textures.begin(), textures.end(), [](const NamedTexture& n) { return n.texture->has_value(); });
+    if (m.unlit) return t;
+    const bool dielectric = m.metallic < 1.0f || m.metallic_roughness_texture;
+    const bool opaque = m.transmission < 1.0f || m.transmission_texture;
+    t.metal = m.metallic > 0.0f && m.base_color != black;
+    t.diffuse = dielectric && opaque && m.base_color != black;
+    t.coat = dielectric && opaque && m.specular > 0.0f;
+    t.glass = dielectric && m.transmission > 0.0f;
+    t.thin = t.glass && m.thickness == 0.0f;
+    t.absorbs = t.glass && !t.thin && std::isfinite(m.attenuation_distance) && m.attenuation_color != white;
+    t.disperses = t.glass && !t.thin && m.dispersion > 0.0f && m.ior > 1.0f;
+    t.rough = m.roughness > 0.0f;
+    t.clearcoat = m.clearcoat > 0.0f;
+    t.rough_clearcoat = t.clearcoat && m.clearcoat_roughness > 0.0f;
+    t.normal_map = m.normal_texture || (t.clearcoat && m.clearcoat_normal_texture);
+    return t;
+}
+
+gpu::SurfaceMaterial surface_of(const Scene& scene, const Material& m, double scale, TextureTable& table) {
+    const SurfaceTraits traits = traits_of(scene, m);
     gpu::SurfaceMaterial surface{};
-    surface.kind = kind_of(material);
-    surface.color = material.base_color;
-    surface.emission = material.emission;
-    surface.ior = material.ior;
-    if (material.double_sided) surface.kind |= SURFACE_DOUBLE_SIDED;
+    surface.color = m.base_color;
+    surface.emission = m.emission;
+    surface.ior = m.ior == 0.0f ? infinite_ior : m.ior;
+    surface.metallic = m.metallic;
+    surface.roughness = m.roughness;
+    surface.transmission = m.transmission;
+    surface.specular = m.specular;
+    surface.specular_color = m.specular_color;
+    surface.opacity = m.opacity;
+    if (traits.absorbs) {
+        const glm::dvec3 color = glm::max(glm::dvec3(m.attenuation_color), glm::dvec3(1e-30));  // black is very dark
+        surface.absorption = glm::vec3(-glm::log(color) / (double(m.attenuation_distance) * scale));
+    }
+    if (traits.disperses) {
+        // Abbe number V = (n_d - 1) / (n_F - n_C), lines d, F, C of the spectrum; micrometres.
+        const double abbe = 20.0 / double(m.dispersion);
+        surface.cauchy = float((double(m.ior) - 1.0) / (abbe * (1.0 / (0.4861 * 0.4861) - 1.0 / (0.6563 * 0.6563))));
+    }
+    surface.clearcoat = m.clearcoat;
+    surface.clearcoat_roughness = m.clearcoat_roughness;
+    surface.alpha_cutoff = m.alpha_cutoff;
+    surface.normal_scale = m.normal_scale;
+    surface.clearcoat_normal_scale = m.clearcoat_normal_scale;
+    const auto textures = textures_of(m);
+    for (std::size_t i = 0; i < textures.size(); ++i) surface.texture[i] = table.add(*textures[i].texture, textures[i].srgb);
+    if (m.double_sided) surface.flags |= SURFACE_DOUBLE_SIDED;
+    if (traits.thin) surface.flags |= SURFACE_THIN;
+    if (traits.alpha) surface.flags |= m.alpha == Material::Alpha::mask ? SURFACE_MASK : SURFACE_BLEND;
+    if (traits.unlit) surface.flags |= SURFACE_UNLIT;
+    if (traits.textured) surface.flags |= SURFACE_TEXTURED;
     return surface;
 }
 
-std::optional<std::string> left_out(const Material& material) {
-    switch (kind_of(material)) {
-        case SURFACE_MIRROR:
-            if (material.metallic < 1.0f) return "its dielectric part";
-            return std::nullopt;
-        case SURFACE_DIELECTRIC:
-            if (material.roughness > 0.0f) return "its roughness";
-            if (material.transmission < 1.0f || material.metallic > 0.0f) return "its part that does not transmit";
-            if (std::isfinite(material.attenuation_distance)) return "absorption in its volume";
-            if (material.specular != 1.0f || material.specular_color != glm::vec3(1.0f)) return "its specular factors";
-            return std::nullopt;
-        default:
-            if (material.transmission > 0.0f) {
-                return material.thickness > 0.0f ? "its transmission" : "its transmission (no volume thickness: thin-walled)";
-            }
-            if (material.metallic > 0.0f) return "its metallic reflection (rough metals are rendered as diffuse)";
-            if (material.specular > 0.0f && material.base_color != glm::vec3(0.0f)) return "its dielectric coat";
-            return std::nullopt;
+std::string describe_material(const Scene& scene, const Material& m) {
+    const SurfaceTraits t = traits_of(scene, m);
+    std::vector<std::string> parts;
+    const auto roughness = [](float r) { return r > 0.0f ? fmt::format("roughness {:g}", r) : std::string("smooth"); };
+    if (t.unlit) parts.push_back(fmt::format("unlit, seen as {}", text(m.base_color)));
+    if (t.diffuse) parts.push_back(fmt::format("diffuse {}", text(m.base_color * (1.0f - (m.metallic_roughness_texture ? 0.0f : m.metallic)))));
+    if (t.metal) parts.push_back(fmt::format("metal {}{}, {}", m.metallic < 1.0f ? fmt::format("{:g} of ", m.metallic) : "", text(m.base_color), roughness(m.roughness)));
+    if (t.coat) parts.push_back(fmt::format("coat of ior {:g}{}, {}", m.ior, m.specular < 1.0f ? fmt::format(", weight {:g}", m.specular) : "", roughness(m.roughness)));
+    if (t.glass) {
+        std::string glass = fmt::format("{} of ior {:g}, tint {}, {}", t.thin ? "thin-walled glass" : "solid glass", m.ior, text(m.base_color), roughness(m.roughness));
+        if (m.transmission < 1.0f) glass += fmt::format(", {:g} of the surface", m.transmission);
+        if (t.absorbs) glass += fmt::format(", {} after {:g} m", text(m.attenuation_color), m.attenuation_distance);
+        if (t.disperses) glass += fmt::format(", Abbe number {:g}", 20.0f / m.dispersion);
+        parts.push_back(glass);
     }
-}
-
-std::string describe_material(const Material& material) {
-    const gpu::SurfaceMaterial surface = surface_of(material);
-    std::string line;
-    switch (kind_of(material)) {
-        case SURFACE_MIRROR: line = fmt::format("mirror, reflectance {}", text(surface.color)); break;
-        case SURFACE_DIELECTRIC: line = fmt::format("smooth dielectric, ior {:g}, tint {}", surface.ior, text(surface.color)); break;
-        default: line = fmt::format("diffuse, albedo {}", text(surface.color)); break;
+    if (t.clearcoat) parts.push_back(fmt::format("clearcoat {:g}, {}", m.clearcoat, roughness(m.clearcoat_roughness)));
+    if (parts.empty()) parts.push_back("black");
+    if (t.alpha) parts.push_back(m.alpha == Material::Alpha::mask ? fmt::format("there where alpha >= {:g}", m.alpha_cutoff) : std::string("there with probability alpha"));
+    std::vector<std::string> names;
+    for (const NamedTexture& texture : textures_of(m)) {
+        if (texture.texture->has_value()) names.push_back(texture.name);
     }
-    if (surface.emission != glm::vec3(0.0f)) {
-        line += fmt::format(", emits {} W m^-2 sr^-1 from {}", text(surface.emission),
-                            material.double_sided ? "both sides" : "its front");
+    if (!names.empty()) parts.push_back(fmt::format("textures: {}", fmt::join(names, ", ")));
+    if (t.emits) {
+        parts.push_back(fmt::format("emits {} W m^-2 sr^-1 from {}", text(m.emission), m.double_sided ? "both sides" : "its front"));
     }
-    if (const auto missing = left_out(material)) line += fmt::format("; left out: {}", *missing);
-    return line;
+    return fmt::format("{}", fmt::join(parts, "; "));
 }
 
 }  // namespace vkcppm

@@ -1,22 +1,42 @@
 #pragma once
-// How the kernels treat a glTF material: the one place where factors become a kind of surface.
+// How the kernels treat a glTF material: the one place where its factors and textures become a surface.
 
-#include <optional>
 #include <string>
 
+#include "render/textures.h"
 #include "scene/scene.h"
 #include "shared/types.h"
 
 namespace vkcppm {
 
-/// The surface that stands for the material. A material is a mirror (metal without roughness), a smooth dielectric
-/// (transmission with a volume), or diffuse.
-gpu::SurfaceMaterial surface_of(const Material& material);
+/// What a material can show somewhere on a surface, textures and vertex colours considered.
+struct SurfaceTraits {
+    bool diffuse = false;
+    bool metal = false;
+    bool coat = false;              // a dielectric coat over a diffuse base
+    bool glass = false;             // transmits
+    bool thin = false;              //   without a volume
+    bool absorbs = false;           //   with absorption in its volume
+    bool disperses = false;
+    bool rough = false;             // a lobe of reflection or transmission of roughness above 0
+    bool clearcoat = false;
+    bool rough_clearcoat = false;
+    bool alpha = false;             // is partly not there
+    bool unlit = false;
+    bool textured = false;
+    bool normal_map = false;
+    bool emits = false;
+    bool reflects() const { return metal || coat || glass || clearcoat; }
+    bool gathers() const { return !unlit && (diffuse || is_rough()); }
+    bool is_rough() const { return (rough && (metal || coat || glass)) || rough_clearcoat; }
+};
 
-/// What surface_of leaves out of the material, in a few words; none where it is exact.
-std::optional<std::string> left_out(const Material& material);
+SurfaceTraits traits_of(const Scene& scene, const Material& material);
 
-/// One line for `vkcppm info`: the kind of surface, its parameters, its emission, what is left out.
-std::string describe_material(const Material& material);
+/// The surface that stands for the material. scale: frame units a metre. Its textures are added to `textures`.
+gpu::SurfaceMaterial surface_of(const Scene& scene, const Material& material, double scale, TextureTable& textures);
+
+/// One line for `vkcppm info`: the lobes, their parameters, textures, emission.
+std::string describe_material(const Scene& scene, const Material& material);
 
 }  // namespace vkcppm

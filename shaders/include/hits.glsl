@@ -2,9 +2,13 @@
 layout(binding = BIND_HIT_POSITION, scalar) buffer HitPositionBlock { HitPosition hit_position[]; };
 layout(binding = BIND_HIT_WEIGHT, scalar) buffer HitWeightBlock { HitWeight hit_weight[]; };
 layout(binding = BIND_HIT_EMISSION, scalar) buffer HitEmissionBlock { HitEmission hit_emission[]; };
+layout(binding = BIND_HIT_SURFACE, scalar) buffer HitSurfaceBlock { HitSurface hit_surface[]; };
 layout(binding = BIND_GATHERED, scalar) buffer GatheredBlock { Gathered gathered[]; };
 
-bool sees_diffuse(uint pixel) { return (hit_position[pixel].state & HIT_MASK) == HIT_DIFFUSE; }
+uint hit_state(uint pixel) { return hit_position[pixel].state & HIT_MASK; }
+
+// True where the pixel has a surface to gather photons on.
+bool gathers(uint pixel) { return (hit_position[pixel].state & HIT_DIFFUSE) != 0u; }
 
 vec3 hit_albedo(uint pixel) {
     uint packed = hit_position[pixel].state >> 2u;

@@ -1,25 +1,66 @@
-// Light sources. Reads lights.
+// Light sources. Reads lights, and textures of those that have them.
 layout(binding = BIND_LIGHTS) uniform usamplerBuffer lights;
 
+#define LIGHT_TEXELS 6
+
 Light light_at(uint index) {
-    uvec4 a = texelFetch(lights, int(index) * 4);
-    uvec4 b = texelFetch(lights, int(index) * 4 + 1);
-    uvec4 c = texelFetch(lights, int(index) * 4 + 2);
-    uvec4 d = texelFetch(lights, int(index) * 4 + 3);
-    return Light(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), uintBitsToFloat(b.w), uintBitsToFloat(c.xyz), c.w,
-                 uintBitsToFloat(d.xyz), d.w);
+    int texel = int(index) * LIGHT_TEXELS;
+    uvec4 a = texelFetch(lights, texel);
+    uvec4 b = texelFetch(lights, texel + 1);
+    uvec4 c = texelFetch(lights, texel + 2);
+    uvec4 d = texelFetch(lights, texel + 3);
+    Light light;
+    light.position = uintBitsToFloat(a.xyz);
+    light.kind = a.w;
+    light.e1 = uintBitsToFloat(b.xyz);
+    light.keep = uintBitsToFloat(b.w);
+    light.e2 = uintBitsToFloat(c.xyz);
+    light.alias_entry = c.w;
+    light.power = uintBitsToFloat(d.xyz);
+    light.double_sided = d.w;
+    if ((FEATURES & FEATURE_TEXTURED_LIGHTS) != 0u) {
+        a = texelFetch(lights, texel + 4);
+        b = texelFetch(lights, texel + 5);
+        light.corner[0] = uintBitsToFloat(a.xy);
+        light.corner[1] = uintBitsToFloat(a.zw);
+        light.corner[2] = uintBitsToFloat(b.xy);
+        light.triangle = b.z;
+        light.textured = b.w;
+    }
+    return light;
+}
+
+// The share of a textured light's factor that is emitted at a point of it: its texture, where the surface is there.
+vec3 emitted_share(Light light, vec2 b) {
+    vec2 barycentric = (1.0 - b.x - b.y) * light.corner[0] + b.x * light.corner[1] + b.y * light.corner[2];
+    SurfaceMaterial material = factors_of(texelFetch(shading, int(light.triangle)).w & ~SHADING_FLAT);
+    vec4 coordinates = (FEATURES & FEATURE_TEXTURES) != 0u ? texcoords_at(light.triangle, barycentric) : vec4(0.0);
+    if ((FEATURES & FEATURE_ALPHA) != 0u) {
+        if ((FEATURES & FEATURE_VERTEX_COLORS) != 0u) {
+            material.opacity *= vertex_color_at(light.triangle, barycentric).a;
+        }
+        if ((FEATURES & FEATURE_TEXTURES) != 0u) {
+            material.opacity *= texture_at(material.texture[TEXTURE_BASE_COLOR], coordinates).a;
+        }
+    }
+    vec3 share = vec3(coverage_of(material));
+    if ((FEATURES & FEATURE_TEXTURES) != 0u) share *= texture_at(material.texture[TEXTURE_EMISSIVE], coordinates).rgb;
+    return share;
 }
 
 // The start of a light path: lights in proportion to their power (alias table, Walker 1974), then position and
-// direction in proportion to what the light emits there, so that every path carries the same power at its start.
-// u, v: eight numbers in [0, 1).
-void emit(vec4 u, vec4 v, out vec3 origin, out vec3 direction, out vec3 power) {
-    float scaled = u.x * float(params.light_count);
-    uint index = min(uint(scaled), params.light_count - 1u);
+// direction in proportion to what the light emits there, so that every path carries the same power at its start (but
+// for what a texture varies within a triangle). bits: four random words; v: four numbers in [0, 1). Returns whether the
+// light is punctual: of no area, so that no eye path meets it.
+bool emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 power) {
+    vec4 u = unit_floats(bits);
+    uint index, low;
+    umulExtended(bits.x, params.light_count, index, low);
     Light light = light_at(index);
     if (u.y >= light.keep) light = light_at(light.alias_entry);
     power = light.power;
-    if (light.kind == LIGHT_TRIANGLE) {
+    // One kind after the other, each only where the scene has it.
+    if ((FEATURES & FEATURE_AREA_LIGHTS) != 0u && light.kind == LIGHT_TRIANGLE) {
         vec2 b = sample_triangle(u.zw);
         vec3 n = normalize(cross(light.e1, light.e2));
         if (light.double_sided != 0u && v.w < 0.5) n = -n;
@@ -28,14 +69,26 @@ void emit(vec4 u, vec4 v, out vec3 origin, out vec3 direction, out vec3 power) {
         vec3 extent = abs(light.position) + abs(light.e1) + abs(light.e2);
         float error = 4.8e-7 * max(extent.x, max(extent.y, extent.z));
         origin = light.position + b.x * light.e1 + b.y * light.e2 + error * n;
-    } else if (light.kind == LIGHT_POINT) {
+        if ((FEATURES & FEATURE_TEXTURED_LIGHTS) != 0u && light.textured != 0u) power *= emitted_share(light, b);
+    }
+    if ((FEATURES & FEATURE_POINT_LIGHTS) != 0u && light.kind == LIGHT_POINT) {
         direction = sample_azimuth(1.0 - 2.0 * v.x, v.y);
         origin = light.position;
-    } else if (light.kind == LIGHT_SPOT) {
+    }
+    if ((FEATURES & FEATURE_SPOT_LIGHTS) != 0u && light.kind == LIGHT_SPOT) {
         direction = normalize(from_frame(light.e1, sample_azimuth(sample_spot_cosine(light.e2.x, light.e2.y, v.x), v.y)));
         origin = light.position;
-    } else {
+    }
+    if ((FEATURES & FEATURE_DIRECTIONAL_LIGHTS) != 0u && light.kind == LIGHT_DIRECTIONAL) {
         direction = light.e1;
         origin = light.position + from_frame(light.e1, vec3(light.e2.x * sample_disc(v.xy), 0.0));
     }
+    if ((FEATURES & FEATURE_ENVIRONMENT) != 0u && light.kind == LIGHT_ENVIRONMENT) {
+        vec3 away;
+        power *= sample_environment(bits.z, u.w, v.xy, away);
+        direction = -away;
+        // From the disc that covers the scene, as a directional light; far enough to lie outside of all.
+        origin = light.position + 1.5 * light.e2.x * away + from_frame(away, vec3(light.e2.x * sample_disc(v.zw), 0.0));
+    }
+    return light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT || light.kind == LIGHT_DIRECTIONAL;
 }

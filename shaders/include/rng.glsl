@@ -22,10 +22,16 @@ uvec4 pcg4d(uvec4 v) {
     return v;
 }
 
-// Four numbers in [0, 1), 24 bits each. `path` is a pixel or light path, `dimension` a bounce.
+// Four random words. `path` is a pixel or light path, `dimension` a bounce.
+uvec4 random_words(uint seed, uint iteration, uint stream, uint path, uint dimension) {
+    return pcg4d(uvec4(path, dimension, iteration * STREAMS + stream, seed));
+}
+
+// Numbers in [0, 1), the upper 24 bits of words.
+vec4 unit_floats(uvec4 words) { return vec4(words >> 8u) * 5.9604644775390625e-8; }
+
 vec4 random4(uint seed, uint iteration, uint stream, uint path, uint dimension) {
-    uvec4 bits = pcg4d(uvec4(path, dimension, iteration * STREAMS + stream, seed));
-    return vec4(bits >> 8u) * 5.9604644775390625e-8;
+    return unit_floats(random_words(seed, iteration, stream, path, dimension));
 }
 
 // Dimensions of an eye path that are stratified over the iterations of a pixel.

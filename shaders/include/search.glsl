@@ -42,10 +42,12 @@ bool in_segment(Walk walk, vec3 position) {
     return grid.dims.w == 0u || (cell.yz == walk.cell.yz && cell.x / HASH_RUN == walk.cell.x / HASH_RUN);
 }
 
-// Both normals on the side they were seen from. The packed one needs no normalisation for this.
-bool same_side(uint packed, vec3 normal) {
+// Both normals on the side they were seen from; photons on the other side count too where a rough surface transmits.
+// The packed normal needs no normalisation for this.
+bool accepted_side(uint packed, vec3 normal, bool both_sides) {
     vec3 n = unpack_octahedron(packed);
     float d = dot(n, normal);
+    if ((FEATURES & FEATURE_ROUGH) != 0u && (FEATURES & FEATURE_TRANSMISSION) != 0u) d = both_sides ? abs(d) : d;
     return d > 0.0 && d * d >= NORMAL_AGREEMENT * NORMAL_AGREEMENT * dot(n, n);
 }
 

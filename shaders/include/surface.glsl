@@ -1,10 +1,12 @@
-// The surface at a hit, on the side from which it was met. Reads triangles, shading and materials.
+// The surface at a hit, on the side from which it was met: its point, its normals and its material with all textures.
+// Reads triangles, shading, vertex attributes, materials and textures.
 struct Surface {
     vec3 position;
-    vec3 geometric;    // unit normals on the side of the incoming ray
-    vec3 normal;       // shading
-    float error;       // rays start this far from `position` along +-geometric
-    bool front;        // met from the front of the triangle
+    vec3 geometric;         // unit normals on the side of the incoming ray
+    vec3 normal;            // shading
+    vec3 clearcoat_normal;  // of the coat on top
+    float error;            // rays start this far from `position` along +-geometric
+    bool front;             // met from the front of the triangle
     uint material;
 };
 
@@ -33,10 +35,104 @@ Surface surface_at(Hit hit, vec3 direction) {
         // A shading normal that faces away from the ray would see the surface from behind.
         if (dot(surface.normal, direction) >= 0.0) surface.normal = surface.geometric;
     }
+    surface.clearcoat_normal = surface.normal;
     return surface;
 }
 
 // Origin of a ray that leaves the surface into `direction`, off its plane by the rounding error of the hit.
 vec3 leave(Surface surface, vec3 direction) {
     return surface.position + (dot(direction, surface.geometric) > 0.0 ? surface.error : -surface.error) * surface.geometric;
+}
+
+// The tangent of the triangle at the hit, on its front: that of the file, else the derivative of the point by u.
+// w: the sign of the bitangent; 0 where there is no tangent to be had.
+vec4 tangent_at(Hit hit, vec3 front_normal, bool second_uv) {
+    if ((FEATURES & FEATURE_TANGENTS) != 0u) {
+        uvec4 corner = texelFetch(tangents_of_triangles, int(hit.triangle));
+        if ((corner.w & 7u) == 7u) {
+            vec3 t = (1.0 - hit.barycentric.x - hit.barycentric.y) * unpack_direction(corner.x) +
+                     hit.barycentric.x * unpack_direction(corner.y) + hit.barycentric.y * unpack_direction(corner.z);
+            return vec4(t, (corner.w & 8u) != 0u ? -1.0 : 1.0);
+        }
+    }
+    int texel = int(hit.triangle) * 3;
+    vec3 e1 = texelFetch(triangles, texel + 1).xyz;
+    vec3 e2 = texelFetch(triangles, texel + 2).xyz;
+    vec4 uv0 = texelFetch(texcoords, texel);
+    vec4 d1 = texelFetch(texcoords, texel + 1) - uv0;
+    vec4 d2 = texelFetch(texcoords, texel + 2) - uv0;
+    vec2 du = second_uv ? vec2(d1.z, d2.z) : vec2(d1.x, d2.x);
+    vec2 dv = second_uv ? vec2(d1.w, d2.w) : vec2(d1.y, d2.y);
+    float area = du.x * dv.y - du.y * dv.x;
+    if (area == 0.0) return vec4(0.0);
+    float turn = sign(area);
+    vec3 t = turn * (e1 * dv.y - e2 * dv.x);
+    // glTF's v runs down the image, and its bitangent up: cross(n, t) where the mapping does not mirror.
+    return vec4(t, turn);
+}
+
+// The normal `front_normal` bent by a normal texture; both on the front of the triangle.
+vec3 bent_normal(Hit hit, vec3 front_normal, uint reference, float scale, vec4 coordinates) {
+    if (reference == 0u) return front_normal;
+    bool second_uv = (lookup_at(reference - 1u).flags & TEXTURE_SECOND_UV) != 0u;
+    vec4 tangent = tangent_at(hit, front_normal, second_uv);
+    vec3 t = tangent.xyz - front_normal * dot(front_normal, tangent.xyz);
+    float length2 = dot(t, t);
+    if (tangent.w == 0.0 || length2 == 0.0) return front_normal;
+    t *= inversesqrt(length2);
+    vec3 b = cross(front_normal, t) * tangent.w;
+    vec3 n = texture_at(reference, coordinates).xyz * 2.0 - 1.0;
+    n.xy *= scale;
+    return normalize(n.x * t + n.y * b + n.z * front_normal);
+}
+
+// The material at the hit. Bends the normals of the surface where it has normal textures.
+SurfaceMaterial material_at(Hit hit, vec3 direction, inout Surface surface) {
+    SurfaceMaterial material = factors_of(surface.material);
+    if ((FEATURES & FEATURE_VERTEX_COLORS) != 0u) {
+        vec4 color = vertex_color_at(hit.triangle, hit.barycentric);
+        material.color *= color.rgb;
+        material.opacity *= color.a;
+    }
+    if ((FEATURES & FEATURE_TEXTURES) != 0u && has(material, SURFACE_TEXTURED)) {
+        vec4 coordinates = texcoords_at(hit.triangle, hit.barycentric);
+        vec4 base = texture_at(material.texture[TEXTURE_BASE_COLOR], coordinates);
+        material.color *= base.rgb;
+        material.opacity *= base.a;
+        material.emission *= texture_at(material.texture[TEXTURE_EMISSIVE], coordinates).rgb;
+        if ((FEATURES & (FEATURE_REFLECTION | FEATURE_TRANSMISSION)) != 0u) {
+            vec2 rough_metal = texture_at(material.texture[TEXTURE_METALLIC_ROUGHNESS], coordinates).gb;
+            material.roughness *= rough_metal.x;
+            material.metallic *= rough_metal.y;
+        }
+        if ((FEATURES & FEATURE_TRANSMISSION) != 0u) {
+            material.transmission *= texture_at(material.texture[TEXTURE_TRANSMISSION], coordinates).r;
+        }
+        if ((FEATURES & FEATURE_COAT) != 0u) {
+            material.specular *= texture_at(material.texture[TEXTURE_SPECULAR], coordinates).a;
+            material.specular_color *= texture_at(material.texture[TEXTURE_SPECULAR_COLOR], coordinates).rgb;
+        }
+        if ((FEATURES & FEATURE_CLEARCOAT) != 0u) {
+            material.clearcoat *= texture_at(material.texture[TEXTURE_CLEARCOAT], coordinates).r;
+            material.clearcoat_roughness *= texture_at(material.texture[TEXTURE_CLEARCOAT_ROUGHNESS], coordinates).g;
+        }
+        if ((FEATURES & FEATURE_NORMAL_MAPS) != 0u) {
+            float side = surface.front ? 1.0 : -1.0;
+            vec3 n = side * surface.normal;
+            surface.normal = side * bent_normal(hit, n, material.texture[TEXTURE_NORMAL], material.normal_scale, coordinates);
+            if (dot(surface.normal, direction) >= 0.0) surface.normal = surface.geometric;
+            if ((FEATURES & FEATURE_CLEARCOAT) != 0u) {
+                surface.clearcoat_normal = side * bent_normal(hit, n, material.texture[TEXTURE_CLEARCOAT_NORMAL],
+                                                              material.clearcoat_normal_scale, coordinates);
+                if (dot(surface.clearcoat_normal, direction) >= 0.0) surface.clearcoat_normal = surface.geometric;
+            }
+        }
+    }
+    return material;
+}
+
+// How much of the surface is there, in [0, 1].
+float coverage_of(SurfaceMaterial material) {
+    if (has(material, SURFACE_MASK)) return material.opacity >= material.alpha_cutoff ? 1.0 : 0.0;
+    return has(material, SURFACE_BLEND) ? material.opacity : 1.0;
 }

@@ -1,19 +1,49 @@
 #version 460
-// One invocation a pixel: a ray through a random point of the pixel, on through mirrors and glass to the first diffuse
-// surface. Reads the scene; writes hit_position, hit_weight, hit_emission (and gathered[].flux as the direction of an
-// unfinished path). O(bounces x log triangles). Fails by running out of steps: the path then goes on next round.
+// One invocation a pixel: a ray through a random point of the pixel (and of the lens), on to a surface on which photons
+// are gathered. The rule, for every surface alike: paths follow lobes of width 0 (mirrors, smooth glass, smooth coats)
+// and gather on diffuse lobes; between following and gathering a rough lobe the path chooses at random, and each way
+// weighs what it finds (followed_weight of include/bsdf.glsl). Reads the scene; writes hit_position, hit_weight,
+// hit_emission, hit_surface in glossy scenes (and gathered[].flux as the direction of an unfinished path).
+// O(bounces x log triangles). Fails by running out of steps: the path then goes on next round.
 #include "include/kernel.glsl"
 #include "include/rng.glsl"
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
 #include "include/scene.glsl"
+#include "include/texture.glsl"
 #include "include/traverse.glsl"
 #include "include/surface.glsl"
-#include "include/specular.glsl"
+#include "include/bsdf.glsl"
+#include "include/path.glsl"
+#include "include/environment.glsl"
 #include "include/bounds.glsl"
 #include "include/hits.glsl"
 
 layout(binding = BIND_AOVS, scalar) buffer AovBlock { Aovs aovs[]; };
+
+#define FIRST_BOUNCE_DIMENSION 2u  // stratified dimensions 0 and 1 place the ray in the pixel
+#define LENS_DIMENSION 6u          // 6 and 7 place it on the lens
+#define LOBE_DIMENSIONS 4096u      // of random numbers, beyond those of bounces: where in a lobe
+
+void camera_ray(uint pixel, out vec3 origin, out vec3 direction, out float distance) {
+    vec2 jitter = vec2(stratified(params.seed, launch.iteration, pixel, 0u),
+                       stratified(params.seed, launch.iteration, pixel, 1u));
+    vec2 raster = vec2(pixel % params.width, pixel / params.width) + jitter;
+    vec2 film = 2.0 * raster / vec2(params.width, params.height) - 1.0;
+    vec3 through = params.forward + film.x * params.right - film.y * params.up;
+    vec3 eye = params.eye;
+    if ((FEATURES & FEATURE_LENS) != 0u) {
+        // A thin lens: what lies in the plane of focus is met by rays from all of it.
+        vec2 lens = params.lens_radius * sample_disc(vec2(stratified(params.seed, launch.iteration, pixel, LENS_DIMENSION),
+                                                          stratified(params.seed, launch.iteration, pixel, LENS_DIMENSION + 1u)));
+        vec3 offset = lens.x * normalize(params.right) + lens.y * normalize(params.up);
+        eye += offset;
+        through = through * params.focus_distance - offset;
+    }
+    direction = normalize(through);
+    origin = enter_bounds(eye, direction);
+    distance = length(origin - eye);
+}
 
 void main() {
     uint pixel = invocation();
@@ -23,21 +53,15 @@ void main() {
     vec3 throughput = vec3(1.0);
     vec3 emission = vec3(0.0);
     float distance = 0.0;   // along the path, for the footprint
-    uint depth = 0u;
+    uint memory = PATH_OUTSIDE;
     uint rays = 0u;
     if (launch.round == 0u) {
-        vec2 jitter = vec2(stratified(params.seed, launch.iteration, pixel, 0u),
-                           stratified(params.seed, launch.iteration, pixel, 1u));
-        vec2 raster = vec2(pixel % params.width, pixel / params.width) + jitter;
-        vec2 film = 2.0 * raster / vec2(params.width, params.height) - 1.0;
-        direction = normalize(params.forward + film.x * params.right - film.y * params.up);
-        origin = enter_bounds(params.eye, direction);
-        distance = length(origin - params.eye);
+        camera_ray(pixel, origin, direction, distance);
     } else {
-        if ((hit_position[pixel].state & HIT_MASK) != HIT_UNFINISHED) return;
+        if (hit_state(pixel) != HIT_UNFINISHED) return;
         origin = hit_position[pixel].position;
         throughput = hit_weight[pixel].weight;
-        depth = hit_weight[pixel].normal;
+        memory = hit_weight[pixel].normal;
         emission = hit_emission[pixel].emission;
         distance = hit_emission[pixel].footprint;
         direction = gathered[pixel].flux;
@@ -46,8 +70,9 @@ void main() {
     HitPosition position = HitPosition(vec3(0.0), HIT_NONE);
     HitWeight weight = HitWeight(vec3(0.0), 0u);
     int steps = int(params.step_budget);
-    for (; depth < params.max_depth; ++depth) {
+    for (; (memory & PATH_BOUNCES) < params.max_depth; ++memory) {
         --steps;
+        uint depth = memory & PATH_BOUNCES;
         bool fresh = steps + 1 == int(params.step_budget);
         Hit hit;
         uint found = trace(origin, direction, steps, hit);
@@ -55,34 +80,77 @@ void main() {
             if (fresh) atomicAdd(status.stuck, 1u);
             block_after(PASS_EYE);
             position = HitPosition(origin, HIT_UNFINISHED);
-            weight = HitWeight(throughput, depth);
+            weight = HitWeight(throughput, memory);
             gathered[pixel].flux = direction;
             break;
         }
         ++rays;
-        if (found == TRACE_MISS) break;
+        if (found == TRACE_MISS) {
+            if ((FEATURES & FEATURE_ENVIRONMENT) != 0u) emission += throughput * environment_radiance(direction);
+            break;
+        }
         distance += hit.t;
         Surface surface = surface_at(hit, direction);
-        SurfaceMaterial material = material_at(surface.material);
+        SurfaceMaterial material = material_at(hit, direction, surface);
+        if ((FEATURES & FEATURE_VOLUME) != 0u) throughput *= transmittance(memory, surface, hit.t);
+        vec4 u = vec4(0.0);  // where in a lobe, and whether the surface is there
+        if ((FEATURES & (FEATURE_ROUGH | FEATURE_ALPHA)) != 0u) {
+            u = random4(params.seed, launch.iteration, STREAM_EYE, pixel, LOBE_DIMENSIONS + depth);
+        }
+        if ((FEATURES & FEATURE_ALPHA) != 0u && u.z >= coverage_of(material)) {
+            origin = leave(surface, direction);
+            continue;
+        }
         if ((FEATURES & FEATURE_AOVS) != 0u && depth == 0u) {
             Aovs sum = aovs[pixel];
             aovs[pixel] = Aovs(sum.albedo + material.color, sum.normal + surface.normal,
                                sum.depth + distance * dot(direction, params.forward), sum.hits + 1u);
         }
-        if (surface.front || (material.kind & SURFACE_DOUBLE_SIDED) != 0u) emission += throughput * material.emission;
-        if (kind_of(material) == SURFACE_DIFFUSE) {
-            weight.weight = throughput * material.color * (1.0 / PI);
-            weight.normal = pack_direction(surface.normal);
+        if ((FEATURES & FEATURE_UNLIT) != 0u && has(material, SURFACE_UNLIT)) {
+            emission += throughput * material.color;
+            break;
+        }
+        if (surface.front || has(material, SURFACE_DOUBLE_SIDED)) emission += throughput * material.emission;
+        float ior = index_for_path(material, STREAM_EYE, pixel, memory, throughput);
+        Bsdf bsdf = bsdf_of(material, ior, surface.front);
+
+        // Gathering takes part in the choice of a lobe, in place of the diffuse one.
+        vec4 lobes = lobes_of(bsdf, surface, -direction);
+        if ((FEATURES & FEATURE_ROUGH) != 0u) {
+            vec3 shares = vec3(gathered_share(bsdf.alpha) * lobes.yz, gathered_share(bsdf.clearcoat_alpha) * lobes.w);
+            lobes.x += shares.x + shares.y + shares.z;
+            lobes.yzw -= shares;
+        }
+        float choice = stratified(params.seed, launch.iteration, pixel, depth + FIRST_BOUNCE_DIMENSION);
+        float probability;
+        uint lobe = choose_lobe(lobes, choice, probability);
+        if (lobe == LOBE_NONE) break;
+        throughput *= 1.0 / probability;
+        if (lobe == LOBE_DIFFUSE) {
             position.position = surface.position;
-            uvec3 albedo = uvec3(clamp(material.color, 0.0, 1.0) * 1023.0 + 0.5);
-            position.state = any(greaterThan(weight.weight, vec3(0.0))) ? HIT_DIFFUSE : HIT_NONE;
+            weight.normal = pack_direction(surface.normal);
+            uvec3 albedo = uvec3(1023u);
+            if ((FEATURES & FEATURE_GLOSS) != 0u) {
+                weight.weight = throughput * (1.0 / PI);
+                hit_surface[pixel] = HitSurface(hit.triangle, hit.barycentric, pack_direction(-direction));
+                position.state = bsdf.glass > 0.0 && bsdf.alpha > 0.0 ? HIT_BOTH_SIDES : HIT_DIFFUSE;
+            } else {
+                weight.weight = throughput * bsdf.diffuse * (1.0 / PI);
+                albedo = uvec3(clamp(bsdf.diffuse, 0.0, 1.0) * 1023.0 + 0.5);
+                position.state = HIT_DIFFUSE;
+            }
             position.state |= (albedo.x | albedo.y << 10u | albedo.z << 20u) << 2u;
             break;
         }
-        if ((FEATURES & (FEATURE_MIRROR | FEATURE_DIELECTRIC)) == 0u) break;
-        float u = stratified(params.seed, launch.iteration, pixel, depth + 2u);
-        throughput *= scatter_specular(material, surface, u, true, direction);
+        if ((FEATURES & (FEATURE_REFLECTION | FEATURE_TRANSMISSION)) == 0u) break;
+        float density;
+        throughput *= sample_lobe(lobe, bsdf, surface, u.xy, true, direction, density);
+        if ((FEATURES & FEATURE_ROUGH) != 0u) {
+            vec3 n = lobe == LOBE_CLEARCOAT ? surface.clearcoat_normal : surface.normal;
+            throughput *= followed_weight(density, dot(direction, n));
+        }
         if (all(lessThanEqual(throughput, vec3(0.0)))) break;
+        memory = pass_boundary(memory, bsdf, lobe, surface);
         origin = leave(surface, direction);
     }
     hit_position[pixel] = position;

@@ -2,6 +2,7 @@
 // One invocation a pixel: sums the photons in its disc with the radius in force before this iteration's photons were
 // looked at, and bins them for the estimator. Reads hits, pixels, grid, sorted photons; writes gathered, tally,
 // cursors. O(photons in the cells that the disc touches). Fails by running out of steps: goes on next round.
+// In glossy scenes every photon is weighed by the BSDF for its direction, made from the surface of the hit again.
 // Acceptance: |y - x| < R strictly (appm looks further for its derivative), and the photon's geometric normal agrees
 // with the pixel's shading normal, both on the side they were seen from; the distance is that in space, the kernel is
 // 1 / (pi R^2), but for appm's.
@@ -9,6 +10,12 @@
 #include "include/rng.glsl"
 #include "include/sampling.glsl"
 #include "include/frame.glsl"
+#include "include/scene.glsl"
+#include "include/texture.glsl"
+#include "include/traverse.glsl"
+#include "include/surface.glsl"
+#include "include/bsdf.glsl"
+#include "include/path.glsl"
 #include "include/grid.glsl"
 #include "include/search.glsl"
 #include "include/hits.glsl"
@@ -17,12 +24,24 @@
 
 layout(binding = BIND_FLUX_TEXELS) uniform usamplerBuffer sorted_flux;
 
+// The surface that the eye path ended on, as it met it.
+void glossy_hit(uint pixel, out Surface surface, out Bsdf bsdf, out vec3 outgoing) {
+    HitSurface record = hit_surface[pixel];
+    outgoing = unpack_direction(record.outgoing);
+    Hit hit = Hit(0.0, record.triangle, record.barycentric);
+    surface = surface_at(hit, -outgoing);
+    SurfaceMaterial material = material_at(hit, -outgoing, surface);
+    uint memory = PATH_OUTSIDE;
+    vec3 weight = vec3(1.0);
+    bsdf = bsdf_of(material, index_for_path(material, STREAM_EYE, pixel, memory, weight), surface.front);
+}
+
 void main() {
     uint pixel = invocation();
     if (pixel >= pixel_count() || blocked(PASS_GATHER)) return;
     Cursor cursor = Cursor(uvec3(CURSOR_START), 0u);
     Gathered sum = Gathered(vec3(0.0), 0u);
-    if (!sees_diffuse(pixel)) {
+    if (!gathers(pixel)) {
         gathered[pixel] = sum;
         return;
     }
@@ -34,12 +53,18 @@ void main() {
 
     vec3 position = hit_position[pixel].position;
     vec3 normal = unpack_direction(hit_weight[pixel].normal);
+    bool both_sides = hit_state(pixel) == HIT_BOTH_SIDES;
     float radius2 = pixels[pixel].radius2;
     float inverse_radius = inversesqrt(radius2);
     vec3 tangent, bitangent;
     tangents(normal, tangent, bitangent);
     tangent *= inverse_radius;
     bitangent *= inverse_radius;
+
+    Surface surface;
+    Bsdf bsdf;
+    vec3 outgoing;
+    if ((FEATURES & FEATURE_GLOSS) != 0u) glossy_hit(pixel, surface, bsdf, outgoing);
 
     begin(pixel);
     int steps = int(params.step_budget);
@@ -51,14 +76,19 @@ void main() {
         vec3 place = uintBitsToFloat(photon.xyz);
         vec3 offset = place - position;
         float squared = dot(offset, offset);
-        if (squared < reach2 && same_side(photon.w, normal) && in_segment(walk, place)) {
+        if (squared < reach2 && accepted_side(photon.w, normal, both_sides) && in_segment(walk, place)) {
             uvec4 flux = texelFetch(sorted_flux, int(walk.first));
-            vec3 power = uintBitsToFloat(flux.xyz);
-            if ((FEATURES & FEATURE_SMOOTH_DIFFUSE) != 0u) {
+            vec3 power = abs(uintBitsToFloat(flux.xyz));
+            vec3 towards = unpack_direction(flux.w);
+            if ((FEATURES & FEATURE_SMOOTH) != 0u) {
                 // Photons arrive per area of the true surface, the BRDF is that of the shaded one.
-                vec3 towards = unpack_direction(flux.w);
                 vec3 geometric = unpack_direction(photon.w);
-                power *= max(0.0, dot(towards, normal)) / max(0.01, dot(towards, geometric));
+                float cos_shading = dot(towards, normal);
+                power *= max(0.0, both_sides ? abs(cos_shading) : cos_shading) / max(0.01, dot(towards, geometric));
+            }
+            if ((FEATURES & FEATURE_GLOSS) != 0u) {
+                bool straight = (flux.x & 0x80000000u) != 0u;
+                power *= PI * gathered_bsdf(bsdf, surface, outgoing, towards, !straight);
             }
             bool inside = squared < radius2;
             float q = squared * inverse_radius * inverse_radius;

@@ -36,7 +36,7 @@ int keep(inout Gathered kept, float squared, uint pixel) {
 void main() {
     uint pixel = invocation();
     if (pixel >= pixel_count() || blocked(PASS_KNN)) return;
-    if (!sees_diffuse(pixel) || pixels[pixel].seeded != 0u) return;
+    if (!gathers(pixel) || pixels[pixel].seeded != 0u) return;
 
     // The largest radius: bounded by the pixel's footprint, but not below a disc of k photons at mean density.
     float cap = sqrt(pixels[pixel].radius2);
@@ -59,6 +59,7 @@ void main() {
 
     vec3 position = hit_position[pixel].position;
     vec3 normal = unpack_direction(hit_weight[pixel].normal);
+    bool both_sides = hit_state(pixel) == HIT_BOTH_SIDES;
     int steps = int(params.step_budget);
     CellBox box;
     Walk walk;
@@ -70,7 +71,7 @@ void main() {
             vec3 place = uintBitsToFloat(photon.xyz);
             vec3 offset = place - position;
             float squared = dot(offset, offset);
-            if (squared < reach2 && same_side(photon.w, normal) && in_segment(walk, place)) {
+            if (squared < reach2 && accepted_side(photon.w, normal, both_sides) && in_segment(walk, place)) {
                 steps -= keep(kept, squared, pixel);
             }
         })

@@ -8,9 +8,12 @@
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
 #include "include/scene.glsl"
+#include "include/texture.glsl"
 #include "include/traverse.glsl"
 #include "include/surface.glsl"
-#include "include/specular.glsl"
+#include "include/bsdf.glsl"
+#include "include/path.glsl"
+#include "include/environment.glsl"
 #include "include/bounds.glsl"
 #include "include/light.glsl"
 #include "include/counters.glsl"
@@ -22,23 +25,13 @@ layout(binding = BIND_COUNTERS, scalar) writeonly buffer CounterBlock { uint cou
 
 #define FIRST_ROULETTE 4u  // bounce from which Russian roulette decides whether a path goes on
 
-float largest(vec3 v) { return max(v.x, max(v.y, v.z)); }
-
-// Throughput of a diffuse bounce; sets the direction. Under shading normals the adjoint is not symmetric: the factor
-// |wi.ns wo.ng| / |wi.ng wo.ns| of Veach 1997, section 5.3, keeps photons and eye paths consistent.
-vec3 scatter_diffuse(SurfaceMaterial material, Surface surface, vec2 u, inout vec3 direction) {
-    vec3 outgoing = normalize(from_frame(surface.normal, sample_cosine(u)));
-    float correction = 1.0;
-    if ((FEATURES & FEATURE_SMOOTH_DIFFUSE) != 0u) {
-        float cos_geometric = dot(outgoing, surface.geometric);
-        float cos_shading = dot(outgoing, surface.normal);
-        correction = cos_geometric <= 0.0 || cos_shading <= 0.0
-                         ? 0.0
-                         : dot(direction, surface.normal) * cos_geometric /
-                               (dot(direction, surface.geometric) * cos_shading);
-    }
-    direction = outgoing;
-    return material.color * correction;
+// Under shading normals scattering is not symmetric: the factor |wi.ns wo.ng| / |wi.ng wo.ns| of Veach 1997, section 5.3,
+// keeps photons and eye paths consistent. `before`, `after`: directions of travel.
+float shading_correction(Surface surface, vec3 before, vec3 after) {
+    float cos_geometric = dot(after, surface.geometric);
+    float cos_shading = dot(after, surface.normal);
+    if (cos_geometric * cos_shading <= 0.0) return 0.0;
+    return dot(before, surface.normal) * cos_geometric / (dot(before, surface.geometric) * cos_shading);
 }
 
 void main() {
@@ -49,7 +42,7 @@ void main() {
 
     PathState state;
     if (launch.round == 0u) {
-        state = PathState(vec3(0.0), 0u, vec3(0.0), 0u, vec3(0.0), 0u, 0.0);
+        state = PathState(vec3(0.0), 0u, vec3(0.0), PATH_OUTSIDE, vec3(0.0), 0u, 0.0);
     } else {
         state = paths[lane];
         if (state.path >= count) return;
@@ -64,10 +57,11 @@ void main() {
             break;
         }
         uint path = first + state.path;
-        if (state.bounce == 0u) {
-            emit(random4(params.seed, launch.iteration, STREAM_PHOTON, path, 0u),
-                 random4(params.seed, launch.iteration, STREAM_PHOTON, path, 1u),
-                 state.origin, state.direction, state.power);
+        if ((state.memory & PATH_BOUNCES) == 0u) {
+            bool punctual = emit(random_words(params.seed, launch.iteration, STREAM_PHOTON, path, 0u),
+                                 random4(params.seed, launch.iteration, STREAM_PHOTON, path, 1u),
+                                 state.origin, state.direction, state.power);
+            state.memory = PATH_OUTSIDE | (punctual ? PATH_STRAIGHT : 0u);
             state.origin = enter_bounds(state.origin, state.direction);
             state.power0 = largest(state.power);
         }
@@ -80,29 +74,56 @@ void main() {
             break;
         }
         ++rays;
-        ++state.bounce;
+        ++state.memory;
+        uint bounces = state.memory & PATH_BOUNCES;
         bool alive = found == TRACE_HIT;
         if (alive) {
             Surface surface = surface_at(hit, state.direction);
-            SurfaceMaterial material = material_at(surface.material);
-            vec4 u = random4(params.seed, launch.iteration, STREAM_PHOTON, path, state.bounce + 1u);
-            if (kind_of(material) == SURFACE_DIFFUSE) {
-                alive = largest(material.color) > 0.0;  // what is black reflects no photon to any eye
-                if (alive) {
+            SurfaceMaterial material = material_at(hit, state.direction, surface);
+            if ((FEATURES & FEATURE_VOLUME) != 0u) state.power *= transmittance(state.memory, surface, hit.t);
+            vec4 u = random4(params.seed, launch.iteration, STREAM_PHOTON, path, bounces + 1u);
+            bool there = true;
+            if ((FEATURES & FEATURE_ALPHA) != 0u) {
+                float coverage = coverage_of(material);
+                there = u.w < coverage;
+                u.w /= coverage;  // uniform again where the surface is there
+            }
+            if (there) {
+                float ior = index_for_path(material, STREAM_PHOTON, path, state.memory, state.power);
+                Bsdf bsdf = bsdf_of(material, ior, surface.front);
+                if ((FEATURES & FEATURE_UNLIT) != 0u && has(material, SURFACE_UNLIT)) bsdf = black();
+                vec4 lobes = lobes_of(bsdf, surface, -state.direction);
+                if (gathers_light(bsdf)) {  // what is black reflects no photon to any eye
                     if (state.stored < params.photon_capacity) {
                         photons[slot + state.stored] = Photon(surface.position, pack_direction(surface.geometric));
-                        photon_flux[slot + state.stored] =
-                            PhotonFlux(state.power, pack_direction(-state.direction));
+                        vec3 power = state.power;
+                        if ((FEATURES & FEATURE_ROUGH) != 0u && (state.memory & PATH_STRAIGHT) != 0u) {
+                            power.r = uintBitsToFloat(floatBitsToUint(power.r) | 0x80000000u);
+                        }
+                        photon_flux[slot + state.stored] = PhotonFlux(power, pack_direction(-state.direction));
                     }
                     ++state.stored;
-                    state.power *= scatter_diffuse(material, surface, u.xy, state.direction);
                 }
-            } else if ((FEATURES & (FEATURE_MIRROR | FEATURE_DIELECTRIC)) != 0u) {
-                state.power *= scatter_specular(material, surface, u.x, false, state.direction);
+                // In scenes without gloss no surface needs two numbers for its direction and a third for its lobe.
+                float probability = 1.0;
+                uint lobe = choose_lobe(lobes, (FEATURES & FEATURE_GLOSS) != 0u ? u.w : u.x, probability);
+                alive = lobe != LOBE_NONE;
+                if (alive) {
+                    vec3 before = state.direction;
+                    float density;
+                    state.power *= sample_lobe(lobe, bsdf, surface, u.xy, false, state.direction, density) * (1.0 / probability);
+                    if (density != DELTA) {
+                        state.memory &= ~PATH_STRAIGHT;
+                        if ((FEATURES & FEATURE_SMOOTH) != 0u) {
+                            state.power *= shading_correction(surface, before, state.direction);
+                        }
+                    }
+                    state.memory = pass_boundary(state.memory, bsdf, lobe, surface);
+                }
             }
             float brightest = largest(state.power);
-            alive = alive && state.bounce < params.max_depth && brightest > 0.0;
-            if (alive && state.bounce >= FIRST_ROULETTE) {
+            alive = alive && bounces < params.max_depth && brightest > 0.0;
+            if (alive && bounces >= FIRST_ROULETTE) {
                 // Survivors carry as much as they started with: photons of nearly equal weight.
                 float survival = min(1.0, brightest / state.power0);
                 alive = u.z < survival;
@@ -112,7 +133,7 @@ void main() {
         }
         if (!alive) {
             ++state.path;
-            state.bounce = 0u;
+            state.memory = PATH_OUTSIDE;
         }
     }
     paths[lane] = state;

@@ -31,7 +31,7 @@ void main() {
     if (pixel >= pixel_count() || blocked(0u)) return;
     PixelState state = pixels[pixel];
     vec3 estimate = hit_emission[pixel].emission;
-    bool diffuse = sees_diffuse(pixel);
+    bool diffuse = gathers(pixel);
     Gathered sum = gathered[pixel];
     if (diffuse) {
         // L = W rho / pi * sum(power) / (pi R^2 J), the radius being that before this update.

@@ -29,26 +29,74 @@ using uint = std::uint32_t;
 #define SPEC_FEATURES 5   // FEATURE_* of this scene
 #define SPEC_DIGIT_BITS 6 // of one radix sort pass
 
-// Features of a scene: a pipeline holds only what its scene needs.
-#define FEATURE_MIRROR 1u
-#define FEATURE_DIELECTRIC 2u
-#define FEATURE_SMOOTH_DIFFUSE 4u  // a diffuse triangle whose shading normals are not its geometric normal
-#define FEATURE_AOVS 8u            // depth, albedo and normal are asked for
+// Features of a scene: a pipeline holds only what its scene needs, and buffers that only a feature reads are empty
+// without it.
+#define FEATURE_REFLECTION 0x1u        // a lobe of reflection: metal, coat or glass
+#define FEATURE_TRANSMISSION 0x2u      // light passes a surface
+#define FEATURE_SMOOTH 0x4u            // photons land where the shading normal is not the geometric one
+#define FEATURE_AOVS 0x8u              // depth, albedo and normal are asked for
+#define FEATURE_GLOSS 0x10u            // gathering weighs every photon by its direction: a coat, or a rough lobe
+#define FEATURE_ROUGH 0x20u            // a lobe of roughness above 0
+#define FEATURE_COAT 0x40u             // a dielectric coat over a diffuse base
+#define FEATURE_CLEARCOAT 0x80u
+#define FEATURE_THIN 0x100u            // thin-walled transmission
+#define FEATURE_VOLUME 0x200u          // absorption inside solids
+#define FEATURE_DISPERSION 0x400u
+#define FEATURE_TEXTURES 0x800u
+#define FEATURE_NORMAL_MAPS 0x1000u
+#define FEATURE_TANGENTS 0x2000u       // tangents of the file, for normal maps
+#define FEATURE_VERTEX_COLORS 0x4000u
+#define FEATURE_ALPHA 0x8000u          // surfaces that are partly not there
+#define FEATURE_UNLIT 0x10000u
+#define FEATURE_LENS 0x20000u          // depth of field is asked for
+#define FEATURE_AREA_LIGHTS 0x40000u
+#define FEATURE_TEXTURED_LIGHTS 0x80000u
+#define FEATURE_POINT_LIGHTS 0x100000u
+#define FEATURE_SPOT_LIGHTS 0x200000u
+#define FEATURE_DIRECTIONAL_LIGHTS 0x400000u
+#define FEATURE_ENVIRONMENT 0x800000u
+#define FEATURE_PUNCTUAL_LIGHTS (FEATURE_POINT_LIGHTS | FEATURE_SPOT_LIGHTS | FEATURE_DIRECTIONAL_LIGHTS)
 
 #define MAX_RINGS 4
 #define MAX_SECTORS 12
 
-// Material kinds.
-#define SURFACE_DIFFUSE 0u
-#define SURFACE_MIRROR 1u
-#define SURFACE_DIELECTRIC 2u
-#define SURFACE_DOUBLE_SIDED 0x80000000u  // emits from both sides
+// Flags of a SurfaceMaterial.
+#define SURFACE_DOUBLE_SIDED 0x1u  // emits from both sides
+#define SURFACE_THIN 0x2u          // transmits without a volume
+#define SURFACE_MASK 0x4u          // there where the alpha reaches the cutoff
+#define SURFACE_BLEND 0x8u         // there with probability alpha
+#define SURFACE_UNLIT 0x10u
+#define SURFACE_TEXTURED 0x20u
+
+// Textures of a SurfaceMaterial.
+#define TEXTURE_BASE_COLOR 0
+#define TEXTURE_METALLIC_ROUGHNESS 1
+#define TEXTURE_NORMAL 2
+#define TEXTURE_EMISSIVE 3
+#define TEXTURE_TRANSMISSION 4
+#define TEXTURE_SPECULAR 5
+#define TEXTURE_SPECULAR_COLOR 6
+#define TEXTURE_CLEARCOAT 7
+#define TEXTURE_CLEARCOAT_ROUGHNESS 8
+#define TEXTURE_CLEARCOAT_NORMAL 9
+#define TEXTURE_COUNT 10
+
+// Flags of a TextureLookup.
+#define TEXTURE_WRAP_S 0x3u      // WRAP_*
+#define TEXTURE_WRAP_T 0xcu      // WRAP_* << 2
+#define TEXTURE_NEAREST 0x10u
+#define TEXTURE_SECOND_UV 0x20u
+#define TEXTURE_SRGB 0x40u       // its red, green and blue are sRGB-encoded
+#define WRAP_REPEAT 0u
+#define WRAP_MIRRORED 1u
+#define WRAP_CLAMP 2u
 
 // Light kinds.
 #define LIGHT_TRIANGLE 0u
 #define LIGHT_POINT 1u
 #define LIGHT_SPOT 2u
 #define LIGHT_DIRECTIONAL 3u
+#define LIGHT_ENVIRONMENT 4u
 
 // Child word of a BVH node: 0 none; top bit set: leaf = first triangle << 3 | count; else index of a node.
 #define BVH_LEAF 0x80000000u
@@ -87,24 +135,55 @@ struct TriangleShading {
     uint material;     // index | SHADING_FLAT
 };
 
-// 32 bytes, read as 2 uvec4 texels.
+// 144 bytes, read as 9 uvec4 texels, and of those only what the scene's features need. Factors as in glTF; a texture
+// multiplies them.
 struct SurfaceMaterial {
-    vec3 color;        // diffuse: albedo; mirror: reflectance at normal incidence; dielectric: tint of transmission
-    uint kind;         // SURFACE_* | SURFACE_DOUBLE_SIDED
-    vec3 emission;     // radiance, W m^-2 sr^-1
-    float ior;         // dielectric
+    vec3 color;            // base colour
+    uint flags;            // SURFACE_*
+    vec3 emission;         // radiance, W m^-2 sr^-1
+    float ior;             // at 587.6 nm; very large for an index of infinity
+    float metallic;
+    float roughness;       // alpha = roughness^2
+    float transmission;
+    float specular;
+    vec3 specular_color;
+    float opacity;
+    vec3 absorption;       // of the volume, 1 / frame unit
+    float cauchy;          // B of n(l) = A + B / l^2, micrometres squared
+    float clearcoat;
+    float clearcoat_roughness;
+    float alpha_cutoff;
+    float normal_scale;
+    uint texture[TEXTURE_COUNT];  // 1 + index of a TextureLookup; 0: none
+    float clearcoat_normal_scale;
+    uint unused;
 };
 
-// One entry of the alias table of lights; 64 bytes, read as 4 uvec4 texels. A path that starts here carries `power`: flux of the light / its probability.
+// 48 bytes, read as 3 uvec4 texels. uv' = (matrix.xy . uv, matrix.zw . uv) + offset.
+struct TextureLookup {
+    uint first;            // texel of its image
+    uint width;
+    uint height;
+    uint flags;            // TEXTURE_*
+    vec4 matrix;           // rows
+    vec2 offset;
+    uint unused[2];
+};
+
+// One entry of the alias table of lights; 96 bytes, read as 6 uvec4 texels, the last two for textured lights only. A
+// path that starts here carries `power`: flux of the light / its probability.
 struct Light {
-    vec3 position;     // triangle: v0; point, spot: position; directional: centre of the disc that covers the scene
+    vec3 position;     // triangle: v0; point, spot: position; directional, environment: centre of the scene's disc
     uint kind;         // LIGHT_*
     vec3 e1;           // triangle: edge; spot, directional: unit direction of travel
     float keep;        // alias table: probability to keep this entry
-    vec3 e2;           // triangle: edge; spot: (cos inner, cos outer, -); directional: (radius of the disc, -, -)
+    vec3 e2;           // triangle: edge; spot: (cos inner, cos outer, -); directional, environment: (radius of the disc, -, -)
     uint alias_entry;  // alias table: the other entry
-    vec3 power;        // W (frame-scaled)
+    vec3 power;        // W (frame-scaled); environment: the mean channel alone, times the colour of the pixel drawn
     uint double_sided; // triangle
+    vec2 corner[3];    // textured: barycentrics of its corners in the triangle that it is a part of
+    uint triangle;     // textured: that triangle, into the leaf-ordered ones
+    uint textured;     // its radiance or alpha comes from textures
 };
 
 // A stored photon: what the distance test reads (16 bytes) and what an accepted photon adds (16 bytes).
@@ -113,27 +192,41 @@ struct Photon {
     uint normal;       // geometric, on the side it arrived at, octahedral snorm16x2
 };
 struct PhotonFlux {
-    vec3 power;        // W (frame-scaled), not yet divided by the number of emitted paths
+    vec3 power;        // W (frame-scaled), not yet divided by the number of emitted paths; red with its sign bit set: the
+                       // photon comes straight from a punctual light, by way of nothing but mirrors and smooth glass
     uint direction;    // unit, towards where it came from, octahedral snorm16x2
 };
 
-// Where an eye path ended. 3 records of 16 bytes, one array each.
+// Where an eye path ended. 3 records of 16 bytes, one array each, and a fourth in glossy scenes.
 struct HitPosition {
     vec3 position;     // scene frame; while the path is unfinished: origin of the next ray
     uint state;        // HIT_* | diffuse albedo, 10 bits a channel, << 2: what the F-tests weigh photons by
 };
 struct HitWeight {
-    vec3 weight;       // path throughput * albedo / pi; unfinished: path throughput
-    uint normal;       // shading normal on the eye's side, octahedral; unfinished: rays so far
+    vec3 weight;       // path throughput * albedo / pi (glossy scenes: / pi alone); unfinished: path throughput
+    uint normal;       // shading normal on the eye's side, octahedral; unfinished: bounces | PATH_*
 };
 struct HitEmission {
     vec3 emission;     // throughput * radiance of emitters met on the way
-    float footprint;   // radius of the pixel's footprint at the hit, scene frame
+    float footprint;   // radius of the pixel's footprint at the hit, scene frame; unfinished: length so far
+};
+struct HitSurface {
+    uint triangle;     // what the BSDF is made from again
+    vec2 barycentric;
+    uint outgoing;     // unit, towards the eye, octahedral snorm16x2
 };
 #define HIT_NONE 0u        // nothing to gather: the path left the scene or was absorbed
-#define HIT_DIFFUSE 1u
+#define HIT_DIFFUSE 1u     // gathers photons that arrive on the side it is seen from
 #define HIT_UNFINISHED 2u  // the step budget ran out: the next round goes on
+#define HIT_BOTH_SIDES 3u  // gathers on a rough surface that transmits
 #define HIT_MASK 3u
+
+// What a path in flight remembers, in one word: bounces | flags | material of the solid it is in.
+#define PATH_BOUNCES 0xfffu
+#define PATH_STRAIGHT 0x1000u   // a photon that has met nothing but delta lobes since it left a punctual light
+#define PATH_DISPERSED 0x2000u  // its wavelength is drawn
+#define PATH_MEDIUM_SHIFT 14u
+#define PATH_NO_MEDIUM 0x3ffffu // also the largest number of materials
 
 // Sum of one pass of the gather over a pixel's disc.
 struct Gathered {
@@ -174,7 +267,7 @@ struct PathState {
     vec3 origin;
     uint path;         // index within the lane's photons; >= the lane's number: done
     vec3 direction;
-    uint bounce;
+    uint memory;       // bounces | PATH_*
     vec3 power;
     uint stored;       // photons this lane has stored
     float power0;      // largest channel of the power at emission, for Russian roulette
@@ -235,6 +328,9 @@ struct Params {
     uint photon_capacity;  // slots a lane
     uint max_depth;
     uint light_count;
+    uvec2 environment;     // its columns and rows
+    float lens_radius;     // frame units; at focus_distance along the axis a point is sharp
+    float focus_distance;
     uint step_budget;      // loop trips of one invocation of a resumable kernel
     uint knn;
     float radius_cap;      // largest starting radius
@@ -266,9 +362,10 @@ struct Launch {
 static_assert(sizeof(BvhNode) == 64);
 static_assert(sizeof(TriangleGeometry) == 48);
 static_assert(sizeof(TriangleShading) == 16);
-static_assert(sizeof(SurfaceMaterial) == 32 && sizeof(Light) == 64);
+static_assert(sizeof(SurfaceMaterial) == 144 && sizeof(TextureLookup) == 48 && sizeof(Light) == 96);
 static_assert(sizeof(Photon) == 16 && sizeof(PhotonFlux) == 16);
-static_assert(sizeof(HitPosition) == 16 && sizeof(HitWeight) == 16 && sizeof(HitEmission) == 16);
+static_assert(sizeof(HitPosition) == 16 && sizeof(HitWeight) == 16 && sizeof(HitEmission) == 16 &&
+              sizeof(HitSurface) == 16);
 static_assert(sizeof(Gathered) == 16 && sizeof(Film) == 24);
 static_assert(sizeof(Launch) <= 128);
 }  // namespace vkcppm::gpu

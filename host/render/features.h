@@ -1,0 +1,26 @@
+#pragma once
+// What a scene asks of the kernels: pipelines are specialised to exactly this set.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "render/feature.h"
+#include "render/flatten.h"
+#include "render/settings.h"
+#include "scene/scene.h"
+
+namespace vkcppm {
+
+/// The features of a scene, in the order of their bits. `flat` must be whole but for its features.
+std::vector<Feature> features_of(const Scene& scene, const FlatScene& flat);
+
+/// Those that settings ask for.
+std::vector<Feature> features_of(const Settings& settings);
+
+std::uint32_t bits_of(const std::vector<Feature>& features);
+
+/// The rule by which an eye path gathers photons on a surface or goes on from it: for `vkcppm info`.
+std::string gathering_rule();
+
+}  // namespace vkcppm

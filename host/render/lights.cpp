@@ -1,0 +1,264 @@
+#include "render/lights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+#include "render/textures.h"
+
+namespace vkcppm {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double cover = 1.001;               // disc of parallel light, in radii of the scene
+constexpr std::uint32_t max_cut = 6;          // a textured emitter is cut in four at most this often
+constexpr double texels_a_part = 4.0;         // parts that are smaller are not cut
+constexpr int part_samples = 4;               // of a part along either side, to weigh it
+constexpr std::size_t max_parts = 1u << 20;   // of all textured emitters
+
+double mean(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
+
+/// Alias table (Walker 1974, Vose 1991): entry i is kept with probability keep[i], else alias[i] stands for it; then
+/// each is drawn in proportion to its weight.
+struct AliasTable {
+    std::vector<float> keep;
+    std::vector<std::uint32_t> alias;
+    double total = 0.0;  // of the weights
+
+    explicit AliasTable(const std::vector<double>& weights) {
+        for (const double weight : weights) total += weight;
+        std::vector<double> share;
+        std::vector<std::uint32_t> small, large;
+        for (std::uint32_t i = 0; i < weights.size(); ++i) {
+            share.push_back(weights[i] / total * double(weights.size()));
+            keep.push_back(1.0f);
+            alias.push_back(i);
+            (share[i] < 1.0 ? small : large).push_back(i);
+        }
+        while (!small.empty() && !large.empty()) {
+            const std::uint32_t poor = small.back(), rich = large.back();
+            small.pop_back();
+            keep[poor] = float(share[poor]);
+            alias[poor] = rich;
+            share[rich] -= 1.0 - share[poor];
+            if (share[rich] < 1.0) {
+                large.pop_back();
+                small.push_back(rich);
+            }
+        }
+    }
+};
+
+/// A light and what it is drawn in proportion to: the mean channel of its flux, about.
+struct WeighedLight {
+    gpu::Light light;  // power: flux, in frame units (W times scale^2)
+    double weight = 0.0;
+};
+
+using Corners = std::array<glm::vec2, 3>;  // barycentrics in the whole triangle
+
+/// Cuts textured emitters into parts.
+class TexturedEmitter {
+public:
+    TexturedEmitter(const Scene& scene, const Triangle& triangle, std::vector<WeighedLight>& lights)
+        : scene_(scene), triangle_(triangle), material_(scene.materials[triangle.material]), lights_(lights) {}
+
+    /// `whole` has the flux that the factor alone would give.
+    void add(const gpu::Light& whole) {
+        whole_ = whole;
+        // A part whose samples are dark may yet hold a bright texel: it keeps a small chance.
+        const Corners all{{{0.0f, 0.0f}, {1.0f, 0.0f}, {0.0f, 1.0f}}};
+        floor_ = 0.02 * weigh(all).mean;
+        cut(all, 0);
+    }
+
+private:
+    struct Weight {
+        double mean = 0.0;
+        double largest = 0.0;
+    };
+
+    /// The mean channel of the texture over a part, where the surface is there, by the nearest texels.
+    Weight weigh(const Corners& corners) const {
+        Weight weight;
+        int count = 0;
+        for (int i = 0; i < part_samples; ++i) {
+            for (int j = 0; i + j < part_samples; ++j) {
+                const float u = (float(i) + 1.0f / 3.0f) / part_samples, v = (float(j) + 1.0f / 3.0f) / part_samples;
+                const double value = emitted((1.0f - u - v) * corners[0] + u * corners[1] + v * corners[2]);
+                weight.mean += value;
+                weight.largest = std::max(weight.largest, value);
+                ++count;
+            }
+        }
+        weight.mean /= count;
+        return weight;
+    }
+
+    double emitted(const glm::vec2& b) const {
+        double value = 1.0;
+        if (material_.emissive_texture) {
+            value *= mean(glm::dvec3(nearest_texel(scene_, *material_.emissive_texture,
+                                                   uv(*material_.emissive_texture, b), true)));
+        }
+        if (material_.alpha != Material::Alpha::opaque && material_.base_color_texture) {
+            const float alpha = material_.opacity * nearest_texel(scene_, *material_.base_color_texture,
+                                                                  uv(*material_.base_color_texture, b), true).a;
+            value *= material_.alpha == Material::Alpha::blend ? alpha : alpha >= material_.alpha_cutoff ? 1.0 : 0.0;
+        }
+        return value;
+    }
+
+    glm::vec2 uv(const Texture& texture, const glm::vec2& b) const {
+        const std::vector<glm::vec2>& set = scene_.uv[texture.uv_set];
+        return (1.0f - b.x - b.y) * set[triangle_.vertex[0]] + b.x * set[triangle_.vertex[1]] + b.y * set[triangle_.vertex[2]];
+    }
+
+    /// Texels that a part covers, about.
+    double texels(const Corners& corners) const {
+        if (!material_.emissive_texture) return 0.0;
+        const Texture& texture = *material_.emissive_texture;
+        const glm::dvec2 size(scene_.images[texture.image].size.width, scene_.images[texture.image].size.height);
+        const glm::dvec2 a = glm::dvec2(texture.matrix * (uv(texture, corners[1]) - uv(texture, corners[0]))) * size;
+        const glm::dvec2 b = glm::dvec2(texture.matrix * (uv(texture, corners[2]) - uv(texture, corners[0]))) * size;
+        return 0.5 * std::abs(a.x * b.y - a.y * b.x);
+    }
+
+    void cut(const Corners& c, std::uint32_t depth) {
+        // An even part may hide what its few samples missed: it is left whole only where it has few texels.
+        const Weight weight = weigh(c);
+        const double few = weight.largest <= 1.5 * weight.mean ? texels_a_part * part_samples : texels_a_part;
+        if (depth == max_cut || texels(c) <= few || lights_.size() + 4 > max_parts) return add_part(c, depth, weight);
+        const glm::vec2 m01 = 0.5f * (c[0] + c[1]), m12 = 0.5f * (c[1] + c[2]), m20 = 0.5f * (c[2] + c[0]);
+        for (const Corners& part : {Corners{c[0], m01, m20}, Corners{m01, c[1], m12}, Corners{m20, m12, c[2]}, Corners{m12, m20, m01}}) {
+            cut(part, depth + 1);
+        }
+    }
+
+    void add_part(const Corners& c, std::uint32_t depth, const Weight& weight) {
+        const auto along = [&](const glm::vec2& b) { return b.x * whole_.e1 + b.y * whole_.e2; };
+        WeighedLight part{whole_};
+        part.light.position = whole_.position + along(c[0]);
+        part.light.e1 = along(c[1] - c[0]);
+        part.light.e2 = along(c[2] - c[0]);
+        std::copy(c.begin(), c.end(), part.light.corner);
+        part.light.textured = 1;
+        const double share = std::ldexp(1.0, -2 * int(depth));  // of the triangle's area
+        part.light.power = glm::vec3(glm::dvec3(whole_.power) * share);
+        part.weight = mean(glm::dvec3(part.light.power)) * std::max(weight.mean, floor_);
+        lights_.push_back(part);
+    }
+
+    const Scene& scene_;
+    const Triangle& triangle_;
+    const Material& material_;
+    std::vector<WeighedLight>& lights_;
+    gpu::Light whole_{};
+    double floor_ = 0.0;
+};
+
+void add_emitters(const Scene& scene, const FlatScene& flat, std::vector<WeighedLight>& lights) {
+    for (std::size_t i = 0; i < flat.triangles.size(); ++i) {
+        const gpu::SurfaceMaterial& surface = flat.materials[flat.shading[i].material & ~SHADING_FLAT];
+        if (surface.emission == glm::vec3(0.0f) || (surface.flags & SURFACE_UNLIT)) continue;
+        const gpu::TriangleGeometry& triangle = flat.triangles[i];
+        gpu::Light light{};
+        light.kind = LIGHT_TRIANGLE;
+        light.position = triangle.v0;
+        light.e1 = triangle.e1;
+        light.e2 = triangle.e2;
+        light.triangle = std::uint32_t(i);
+        light.double_sided = (surface.flags & SURFACE_DOUBLE_SIDED) != 0 ? 1 : 0;
+        const double area = 0.5 * glm::length(glm::cross(glm::dvec3(triangle.e1), glm::dvec3(triangle.e2)));
+        light.power = glm::vec3(glm::dvec3(surface.emission) * (pi * area * (light.double_sided ? 2.0 : 1.0)));
+        if (surface.texture[TEXTURE_EMISSIVE] != 0 || (surface.flags & (SURFACE_MASK | SURFACE_BLEND)) != 0) {
+            TexturedEmitter(scene, scene.triangles[flat.bvh.order[i]], lights).add(light);
+        } else {
+            lights.push_back({light, mean(glm::dvec3(light.power))});
+        }
+    }
+}
+
+void add_punctual_lights(const Scene& scene, const FlatScene& flat, std::vector<WeighedLight>& lights) {
+    const double scale2 = flat.frame.scale * flat.frame.scale;
+    for (const PunctualLight& source : scene.lights) {
+        gpu::Light light{};
+        const glm::dvec3 intensity(source.intensity);
+        light.position = glm::vec3(flat.frame.point(source.position));
+        light.e1 = glm::vec3(source.direction);
+        switch (source.kind) {
+            case PunctualLight::Kind::point:
+                light.kind = LIGHT_POINT;
+                light.power = glm::vec3(intensity * (4.0 * pi * scale2));
+                break;
+            case PunctualLight::Kind::spot: {
+                light.kind = LIGHT_SPOT;
+                const double inner = std::cos(source.inner_cone), outer = std::cos(source.outer_cone);
+                light.e2 = glm::vec3(inner, outer, 0.0);
+                // Integral of clamp((c - outer) / (inner - outer), 0, 1)^2 over the sphere.
+                light.power = glm::vec3(intensity * (2.0 * pi * scale2 * ((1.0 - inner) + (inner - outer) / 3.0)));
+                break;
+            }
+            case PunctualLight::Kind::directional: {
+                light.kind = LIGHT_DIRECTIONAL;
+                const double radius = flat.radius * cover;
+                light.position = glm::vec3(source.direction * (-1.5 * radius));
+                light.e2 = glm::vec3(radius, 0.0, 0.0);
+                light.power = glm::vec3(intensity * (pi * radius * radius));
+                break;
+            }
+        }
+        lights.push_back({light, mean(glm::dvec3(light.power))});
+    }
+}
+
+void add_environment(const Scene& scene, FlatScene& flat, std::vector<WeighedLight>& lights) {
+    if (!scene.environment || flat.triangles.empty()) return;
+    const Environment& map = *scene.environment;
+    std::vector<double> weights;  // mean channel of radiance times solid angle
+    for (std::uint32_t row = 0; row < map.size.height; ++row) {
+        const double band = std::cos(pi * row / map.size.height) - std::cos(pi * (row + 1.0) / map.size.height);
+        for (std::uint32_t column = 0; column < map.size.width; ++column) {
+            const glm::vec3& radiance = map.radiance[std::size_t(row) * map.size.width + column];
+            weights.push_back(mean(glm::dvec3(radiance)) * band * 2.0 * pi / map.size.width);
+        }
+    }
+    const AliasTable table(weights);
+    flat.environment_size = map.size;
+    flat.environment_alias = table.alias;
+    for (std::size_t i = 0; i < weights.size(); ++i) flat.environment.emplace_back(map.radiance[i], table.keep[i]);
+    if (!(table.total > 0.0)) return;
+    gpu::Light light{};
+    light.kind = LIGHT_ENVIRONMENT;
+    const double radius = flat.radius * cover;
+    light.e2 = glm::vec3(radius, 0.0, 0.0);
+    const double flux = table.total * pi * radius * radius;
+    light.power = glm::vec3(glm::dvec3(flux));
+    lights.push_back({light, flux});
+}
+
+}  // namespace
+
+void add_lights(const Scene& scene, FlatScene& flat) {
+    std::vector<WeighedLight> lights;
+    add_emitters(scene, flat, lights);
+    add_punctual_lights(scene, flat, lights);
+    add_environment(scene, flat, lights);
+    std::erase_if(lights, [](const WeighedLight& light) { return !(light.weight > 0.0); });
+    if (lights.empty()) return;
+    std::vector<double> weights;
+    for (const WeighedLight& light : lights) weights.push_back(light.weight);
+    const AliasTable table(weights);
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        gpu::Light light = lights[i].light;
+        light.power = glm::vec3(glm::dvec3(light.power) * (table.total / lights[i].weight));  // flux / probability
+        light.keep = table.keep[i];
+        light.alias_entry = table.alias[i];
+        flat.lights.push_back(light);
+    }
+}
+
+}  // namespace vkcppm

@@ -1,0 +1,39 @@
+#pragma once
+// The images of a scene as the kernels read them: words in one buffer, and a record for each way of looking one up.
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec4.hpp>
+
+#include "scene/scene.h"
+#include "shared/types.h"
+
+namespace vkcppm {
+
+class TextureTable {
+public:
+    explicit TextureTable(const Scene& scene);
+
+    /// 1 + index of the lookup of this texture, 0 where there is none. srgb: its colours are sRGB-encoded.
+    std::uint32_t add(const std::optional<Texture>& texture, bool srgb);
+
+    const std::vector<gpu::TextureLookup>& lookups() const { return lookups_; }
+    /// Images that are looked up, one after the other, a word a texel (red in the lowest byte).
+    const std::vector<std::uint32_t>& texels() const { return texels_; }
+
+private:
+    const Scene& scene_;
+    std::vector<std::uint32_t> first_;  // texel of each image; none: not yet there
+    std::vector<gpu::TextureLookup> lookups_;
+    std::vector<std::uint32_t> texels_;
+};
+
+/// The texel of `texture` that is nearest to uv, linear: good enough to weigh lights, which the kernels then look up
+/// exactly.
+glm::vec4 nearest_texel(const Scene& scene, const Texture& texture, const glm::vec2& uv, bool srgb);
+
+/// True where the alpha of the image is below 1 anywhere.
+bool has_alpha(const TextureImage& image);
+
+}  // namespace vkcppm

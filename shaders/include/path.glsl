@@ -1,0 +1,32 @@
+// What a path remembers from bounce to bounce besides its ray and its throughput: the solid that it is in and whether
+// it has a wavelength, in one word (PATH_*).
+#include "include/wavelength.glsl"
+
+#define PATH_OUTSIDE (PATH_NO_MEDIUM << PATH_MEDIUM_SHIFT)
+
+// What the solid that the path is in lets through over `distance`. A boundary that is met from inside names its own
+// solid: the eye may stand in one, and after nested solids the memory is of the inner one.
+vec3 transmittance(uint memory, Surface surface, float distance) {
+    uint medium = memory >> PATH_MEDIUM_SHIFT;
+    if (!surface.front) {
+        SurfaceMaterial material = factors_of(surface.material);
+        if (material.transmission > 0.0 && !has(material, SURFACE_THIN)) medium = surface.material;
+    }
+    return medium == PATH_NO_MEDIUM ? vec3(1.0) : exp(-distance * absorption_of(medium));
+}
+
+// The memory after a lobe was followed: through the boundary of a solid lies its inside, or the outside.
+uint pass_boundary(uint memory, Bsdf bsdf, uint lobe, Surface surface) {
+    if ((FEATURES & FEATURE_VOLUME) == 0u || lobe != LOBE_TRANSMISSION || bsdf.thin) return memory;
+    uint medium = surface.front ? surface.material : PATH_NO_MEDIUM;
+    return (memory & ((1u << PATH_MEDIUM_SHIFT) - 1u)) | medium << PATH_MEDIUM_SHIFT;
+}
+
+// The index of refraction that the path meets. At its first dispersive surface it is given its wavelength.
+float index_for_path(SurfaceMaterial material, uint stream, uint path, inout uint memory, inout vec3 throughput) {
+    if ((FEATURES & FEATURE_DISPERSION) == 0u || material.cauchy == 0.0) return material.ior;
+    float wavelength = wavelength_of(stream, path);
+    if ((memory & PATH_DISPERSED) == 0u) throughput *= wavelength_weight(wavelength);
+    memory |= PATH_DISPERSED;
+    return index_at(material.ior, material.cauchy, wavelength);
+}

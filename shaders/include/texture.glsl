@@ -1,0 +1,58 @@
+// Texture lookups: images as words in one texel buffer. Reads textures and texels.
+layout(binding = BIND_TEXTURES) uniform usamplerBuffer textures;
+layout(binding = BIND_TEXELS) uniform usamplerBuffer texels;
+
+vec3 srgb_to_linear(vec3 c) {
+    return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThanEqual(c, vec3(0.04045)));
+}
+
+TextureLookup lookup_at(uint index) {
+    int texel = int(index) * 3;
+    uvec4 a = texelFetch(textures, texel);
+    uvec4 b = texelFetch(textures, texel + 1);
+    uvec4 c = texelFetch(textures, texel + 2);
+    return TextureLookup(a.x, a.y, a.z, a.w, uintBitsToFloat(b), uintBitsToFloat(c.xy), uint[2](0u, 0u));
+}
+
+// A coordinate within the image for any number: one period of the wrapping.
+float wrap_coordinate(float u, uint mode) {
+    if (mode == WRAP_REPEAT) return u - floor(u);
+    if (mode == WRAP_MIRRORED) return 1.0 - abs(u - 2.0 * floor(0.5 * u) - 1.0);
+    return clamp(u, 0.0, 1.0);
+}
+
+// Index of a texel that may lie one beyond either end.
+int wrap_index(int i, int size, uint mode) {
+    if (mode == WRAP_REPEAT) return i < 0 ? i + size : i >= size ? i - size : i;
+    return clamp(i, 0, size - 1);  // beyond a mirrored edge comes the edge itself
+}
+
+vec4 texel_at(TextureLookup lookup, int x, int y) {
+    x = wrap_index(x, int(lookup.width), lookup.flags & TEXTURE_WRAP_S);
+    y = wrap_index(y, int(lookup.height), (lookup.flags & TEXTURE_WRAP_T) >> 2u);
+    vec4 c = unpackUnorm4x8(texelFetch(texels, int(lookup.first) + y * int(lookup.width) + x).x);
+    if ((lookup.flags & TEXTURE_SRGB) != 0u) c.rgb = srgb_to_linear(c.rgb);
+    return c;
+}
+
+// The texture `reference` - 1 at the coordinates of both sets; linear. White where there is none (reference 0).
+// Bilinear between texel centres, or the nearest one; no mipmaps: pixels are averaged over many samples.
+vec4 texture_at(uint reference, vec4 coordinates) {
+    if (reference == 0u) return vec4(1.0);
+    TextureLookup lookup = lookup_at(reference - 1u);
+    vec2 uv = (lookup.flags & TEXTURE_SECOND_UV) != 0u ? coordinates.zw : coordinates.xy;
+    uv = vec2(dot(lookup.matrix.xy, uv), dot(lookup.matrix.zw, uv)) + lookup.offset;
+    uv = vec2(wrap_coordinate(uv.x, lookup.flags & TEXTURE_WRAP_S),
+              wrap_coordinate(uv.y, (lookup.flags & TEXTURE_WRAP_T) >> 2u));
+    uv *= vec2(lookup.width, lookup.height);
+    if ((lookup.flags & TEXTURE_NEAREST) != 0u) {
+        ivec2 i = ivec2(min(uv, vec2(lookup.width, lookup.height) - 1.0));
+        return texel_at(lookup, i.x, i.y);
+    }
+    uv -= 0.5;
+    vec2 low = floor(uv);
+    vec2 f = uv - low;
+    ivec2 i = ivec2(low);
+    return mix(mix(texel_at(lookup, i.x, i.y), texel_at(lookup, i.x + 1, i.y), f.x),
+               mix(texel_at(lookup, i.x, i.y + 1), texel_at(lookup, i.x + 1, i.y + 1), f.x), f.y);
+}
