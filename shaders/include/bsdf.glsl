@@ -175,19 +175,20 @@ vec4 lobes_of(Bsdf b, Surface surface, vec3 wo) {
     return lobes;
 }
 
-// The lobe that u in [0, 1) chooses, and its probability.
-uint choose_lobe(vec4 lobes, float u, out float probability) {
+// The lobe that u in [0, 1) chooses, and 1 / its probability.
+uint choose_lobe(vec4 lobes, float u, out float inverse_probability) {
     float total = lobes.x + lobes.y + lobes.z + lobes.w;
-    probability = 0.0;
     float at = u * total;
+    float chosen_share = 1.0;
     uint chosen = LOBE_NONE;
     for (uint i = 0u; i < 4u; ++i) {
         if (lobes[i] > 0.0 && at >= 0.0) {
             chosen = i;
-            probability = lobes[i] / total;
+            chosen_share = lobes[i];
         }
         at -= lobes[i];
     }
+    inverse_probability = total / chosen_share;
     return chosen;
 }
 

@@ -18,14 +18,15 @@ SurfaceMaterial factors_of(uint index) {
     material.flags = t.w;
     t = texelFetch(materials, texel + 1);
     material.emission = uintBitsToFloat(t.xyz);
-    material.ior = uintBitsToFloat(t.w);
-    material.metallic = material.roughness = material.transmission = material.specular = 0.0;
+    material.specular = uintBitsToFloat(t.w);
+    material.metallic = material.roughness = material.transmission = 0.0;
+    material.ior = 1.0;
     if ((FEATURES & (FEATURE_REFLECTION | FEATURE_TRANSMISSION)) != 0u) {
         t = texelFetch(materials, texel + 2);
         material.metallic = uintBitsToFloat(t.x);
         material.roughness = uintBitsToFloat(t.y);
         material.transmission = uintBitsToFloat(t.z);
-        material.specular = uintBitsToFloat(t.w);
+        material.ior = uintBitsToFloat(t.w);
     }
     material.specular_color = vec3(1.0);
     material.opacity = 1.0;

@@ -53,7 +53,7 @@ void main() {
     vec3 throughput = vec3(1.0);
     vec3 emission = vec3(0.0);
     float distance = 0.0;   // along the path, for the footprint
-    uint memory = PATH_OUTSIDE;
+    uint memory = PATH_OUTSIDE | PATH_STRAIGHT;
     uint rays = 0u;
     if (launch.round == 0u) {
         camera_ray(pixel, origin, direction, distance);
@@ -107,7 +107,8 @@ void main() {
                                sum.depth + distance * dot(direction, params.forward), sum.hits + 1u);
         }
         if ((FEATURES & FEATURE_UNLIT) != 0u && has(material, SURFACE_UNLIT)) {
-            emission += throughput * material.color;
+            // What emits no photons must not be seen by rough lobes: photons would have to bring their share of it.
+            if ((memory & PATH_STRAIGHT) != 0u) emission += throughput * material.color;
             break;
         }
         if (surface.front || has(material, SURFACE_DOUBLE_SIDED)) emission += throughput * material.emission;
@@ -122,10 +123,10 @@ void main() {
             lobes.yzw -= shares;
         }
         float choice = stratified(params.seed, launch.iteration, pixel, depth + FIRST_BOUNCE_DIMENSION);
-        float probability;
-        uint lobe = choose_lobe(lobes, choice, probability);
+        float inverse_probability;
+        uint lobe = choose_lobe(lobes, choice, inverse_probability);
         if (lobe == LOBE_NONE) break;
-        throughput *= 1.0 / probability;
+        throughput *= inverse_probability;
         if (lobe == LOBE_DIFFUSE) {
             position.position = surface.position;
             weight.normal = pack_direction(surface.normal);
@@ -148,6 +149,7 @@ void main() {
         if ((FEATURES & FEATURE_ROUGH) != 0u) {
             vec3 n = lobe == LOBE_CLEARCOAT ? surface.clearcoat_normal : surface.normal;
             throughput *= followed_weight(density, dot(direction, n));
+            if (density != DELTA) memory &= ~PATH_STRAIGHT;
         }
         if (all(lessThanEqual(throughput, vec3(0.0)))) break;
         memory = pass_boundary(memory, bsdf, lobe, surface);

@@ -105,13 +105,13 @@ void main() {
                     ++state.stored;
                 }
                 // In scenes without gloss no surface needs two numbers for its direction and a third for its lobe.
-                float probability = 1.0;
-                uint lobe = choose_lobe(lobes, (FEATURES & FEATURE_GLOSS) != 0u ? u.w : u.x, probability);
+                float inverse_probability;
+                uint lobe = choose_lobe(lobes, (FEATURES & FEATURE_GLOSS) != 0u ? u.w : u.x, inverse_probability);
                 alive = lobe != LOBE_NONE;
                 if (alive) {
                     vec3 before = state.direction;
                     float density;
-                    state.power *= sample_lobe(lobe, bsdf, surface, u.xy, false, state.direction, density) * (1.0 / probability);
+                    state.power *= sample_lobe(lobe, bsdf, surface, u.xy, false, state.direction, density) * inverse_probability;
                     if (density != DELTA) {
                         state.memory &= ~PATH_STRAIGHT;
                         if ((FEATURES & FEATURE_SMOOTH) != 0u) {

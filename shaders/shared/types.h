@@ -141,11 +141,11 @@ struct SurfaceMaterial {
     vec3 color;            // base colour
     uint flags;            // SURFACE_*
     vec3 emission;         // radiance, W m^-2 sr^-1
-    float ior;             // at 587.6 nm; very large for an index of infinity
+    float specular;
     float metallic;
     float roughness;       // alpha = roughness^2
     float transmission;
-    float specular;
+    float ior;             // at 587.6 nm; very large for an index of infinity
     vec3 specular_color;
     float opacity;
     vec3 absorption;       // of the volume, 1 / frame unit
@@ -223,7 +223,7 @@ struct HitSurface {
 
 // What a path in flight remembers, in one word: bounces | flags | material of the solid it is in.
 #define PATH_BOUNCES 0xfffu
-#define PATH_STRAIGHT 0x1000u   // a photon that has met nothing but delta lobes since it left a punctual light
+#define PATH_STRAIGHT 0x1000u   // it has met nothing but delta lobes since it left the eye or a punctual light
 #define PATH_DISPERSED 0x2000u  // its wavelength is drawn
 #define PATH_MEDIUM_SHIFT 14u
 #define PATH_NO_MEDIUM 0x3ffffu // also the largest number of materials
