@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <numbers>
@@ -6,13 +7,14 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <glm/common.hpp>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
 #include "app/console.h"
+#include "app/load.h"
 #include "render/surface.h"
-#include "scene/gltf.h"
 
 namespace vkcppm {
 namespace {
@@ -41,6 +43,39 @@ std::vector<std::size_t> triangles_by_material(const Scene& scene) {
         ++counts[triangle.material];
     }
     return counts;
+}
+
+/// What the vertices carry, by glTF's names.
+std::vector<std::string> vertex_attributes(const Scene& scene) {
+    std::vector<std::string> names{"POSITION", "NORMAL"};
+    if (!scene.tangents.empty()) {
+        names.push_back("TANGENT");
+    }
+    for (std::size_t set = 0; set < scene.uv.size(); ++set) {
+        if (!scene.uv[set].empty()) {
+            names.push_back(fmt::format("TEXCOORD_{}", set));
+        }
+    }
+    if (!scene.colors.empty()) {
+        names.push_back("COLOR_0");
+    }
+    return names;
+}
+
+/// The mean over all directions: pixels weighted by their solid angles.
+glm::dvec3 mean_radiance(const Environment& environment) {
+    const auto [width, height] = environment.size;
+    glm::dvec3 mean(0.0);
+    for (std::uint32_t y = 0; y < height; ++y) {
+        glm::dvec3 row(0.0);
+        for (std::uint32_t x = 0; x < width; ++x) {
+            row += glm::dvec3(environment.radiance[std::size_t(y) * width + x]);
+        }
+        const double of_sphere = 0.5 * (std::cos(std::numbers::pi * y / height) -
+                                        std::cos(std::numbers::pi * (y + 1.0) / height));
+        mean += of_sphere / width * row;
+    }
+    return mean;
 }
 
 const char* kind_name(PunctualLight::Kind kind) {
@@ -98,12 +133,19 @@ std::string text_of(const PunctualLight& light) {
     return text + "\n";
 }
 
+Json json_of(const Environment& environment) {
+    return {{"width", environment.size.width},
+            {"height", environment.size.height},
+            {"mean_radiance", json_of(mean_radiance(environment))}};
+}
+
 std::string json_text(const Scene& scene) {
     Json json;
     json["scene"] = scene.file.string();
     json["hash"] = fmt::format("{:016x}", scene.hash);
     json["vertices"] = scene.positions.size();
     json["triangles"] = scene.triangles.size();
+    json["vertex_attributes"] = vertex_attributes(scene);
     const std::optional<Bounds> bounds = bounds_of(scene);
     json["bounds"] = bounds ? Json{{"min", json_of(bounds->low)}, {"max", json_of(bounds->high)}} : Json();
     json["materials"] = Json::array();
@@ -115,10 +157,15 @@ std::string json_text(const Scene& scene) {
                                      {"emission", json_of(material.emission)},
                                      {"treatment", describe_material(scene, material)}});
     }
+    json["images"] = Json::array();
+    for (const TextureImage& image : scene.images) {
+        json["images"].push_back({{"name", image.name}, {"width", image.size.width}, {"height", image.size.height}});
+    }
     json["lights"] = Json::array();
     for (const PunctualLight& light : scene.lights) {
         json["lights"].push_back(json_of(light));
     }
+    json["environment"] = scene.environment ? json_of(*scene.environment) : Json();
     json["cameras"] = Json::array();
     for (const Camera& camera : scene.cameras) {
         json["cameras"].push_back({{"name", camera.name},
@@ -137,12 +184,23 @@ std::string plain_text(const Scene& scene) {
     if (const std::optional<Bounds> bounds = bounds_of(scene)) {
         fmt::format_to(out, "bounds {} to {} m\n", text_of(bounds->low), text_of(bounds->high));
     }
+    fmt::format_to(out, "vertices with {}\n", fmt::join(vertex_attributes(scene), ", "));
     fmt::format_to(out, "{} materials\n", scene.materials.size());
     const std::vector<std::size_t> triangles = triangles_by_material(scene);
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& material = scene.materials[i];
         fmt::format_to(out, "  {} '{}', {} triangles: {}\n", i, material.name, triangles[i],
                        describe_material(scene, material));
+    }
+    fmt::format_to(out, "{} images\n", scene.images.size());
+    for (std::size_t i = 0; i < scene.images.size(); ++i) {
+        const TextureImage& image = scene.images[i];
+        fmt::format_to(out, "  {} '{}', {}x{}\n", i, image.name, image.size.width, image.size.height);
+    }
+    if (scene.environment) {
+        const Extent size = scene.environment->size;
+        fmt::format_to(out, "environment of {}x{}, mean radiance {} W m^-2 sr^-1\n", size.width, size.height,
+                       text_of(mean_radiance(*scene.environment)));
     }
     fmt::format_to(out, "{} punctual lights\n", scene.lights.size());
     for (const PunctualLight& light : scene.lights) {
@@ -160,7 +218,7 @@ std::string plain_text(const Scene& scene) {
 }  // namespace
 
 void execute(const InfoOptions& options) {
-    const Scene scene = load_gltf(options.scene);
+    const Scene scene = load_scene(options.scene);
     for (const std::string& warning : scene.warnings) {
         print_message("warning: " + warning);
     }

@@ -68,6 +68,13 @@ Extent parse_size(const std::string& option, const std::string& text) {
     return size;
 }
 
+ThinGlass parse_thin_glass(const std::string& option, const std::string& text) {
+    if (text != "thin" && text != "solid") {
+        refuse(option, text, "thin or solid");
+    }
+    return text == "solid" ? ThinGlass::solid : ThinGlass::thin;
+}
+
 /// Seconds of a duration such as 90, 90s, 2m, 1.5h or 500ms.
 double parse_seconds(const std::string& option, const std::string& text) {
     std::string_view unit = text;
@@ -110,6 +117,14 @@ bool parse(CLI::App& app, const Words& words, std::string& text) {
     return false;
 }
 
+void add_scene(CLI::App& app, SceneOptions& scene) {
+    app.add_option("SCENE", scene.file, "glTF 2.0 file, .gltf or .glb")->required()->type_name("");
+    app.add_option("--environment", scene.environment, "Light from outside: a picture of all directions, EXR or Radiance")
+        ->type_name("FILE.exr|.hdr");
+    add(app, "--thin-glass", "thin|solid", scene.thin_glass, parse_thin_glass,
+        "Glass without a volume thickness: thin-walled, or solid where its mesh is closed (default: thin)");
+}
+
 std::string estimator_help() {
     std::string help = "How photons become radiance:";
     for (const EstimatorRow& row : estimators()) {
@@ -131,7 +146,7 @@ Options parse_render(const Words& words) {
                  "vkcppm");
     app.footer(footer);
     app.set_version_flag("--version", "vkcppm " VKCPPM_VERSION);
-    app.add_option("SCENE", options.scene, "glTF 2.0 file, .gltf or .glb")->required()->type_name("");
+    add_scene(app, options.scene);
     app.add_option("-o", output, "The picture, linear float EXR (default: the scene's name with .exr, here)")
         ->type_name("OUT.exr");
     app.add_option("--png", options.png, "The picture for the eye, 8-bit sRGB as well")->type_name("FILE.png");
@@ -150,6 +165,10 @@ Options parse_render(const Words& words) {
         "Pixels (default: 512 on the longer side, in the camera's aspect)");
     app.add_option("--camera", options.settings.camera, "Camera by name or index (default: the first)")
         ->type_name("NAME|INDEX");
+    add(app, "--aperture", "METRES", options.settings.aperture, parse_real,
+        "Diameter of the lens; what is not at --focus-distance is blurred (default: 0, all is sharp)");
+    add(app, "--focus-distance", "METRES", options.settings.focus_distance, parse_real,
+        "From the camera along its axis to what is sharp; goes with --aperture");
     add(app, "--seed", "N", options.settings.seed, parse_whole,
         fmt::format("Same seed, same picture (default: {})", standard.seed));
     add(app, "--max-depth", "N", options.settings.max_depth, parse_whole,
@@ -182,7 +201,7 @@ Options parse_render(const Words& words) {
     if (!parse(app, words, text)) {
         return TextOptions{text};
     }
-    options.output = output ? *output : std::filesystem::path(options.scene.stem().string() + ".exr");
+    options.output = output ? *output : std::filesystem::path(options.scene.file.stem().string() + ".exr");
     if (iterations) {
         options.settings.iterations = *iterations;
     } else if (options.settings.seconds) {
@@ -208,7 +227,7 @@ Options parse_info(const Words& words) {
     InfoOptions options;
     std::string text;
     CLI::App app("Lists what is in a scene and how it will be treated.", "vkcppm info");
-    app.add_option("SCENE", options.scene, "glTF 2.0 file, .gltf or .glb")->required()->type_name("");
+    add_scene(app, options.scene);
     app.add_flag("--json", options.json, "Print JSON");
     if (!parse(app, words, text)) {
         return TextOptions{text};

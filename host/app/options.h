@@ -11,9 +11,19 @@
 
 namespace vkcppm {
 
+/// How glass without a volume is taken: as glTF says, or as solid where its mesh is closed.
+enum class ThinGlass { thin, solid };
+
+/// The scene and what is done to it before anything else.
+struct SceneOptions {
+    std::filesystem::path file;
+    std::optional<std::filesystem::path> environment;  // EXR or Radiance
+    ThinGlass thin_glass = ThinGlass::thin;
+};
+
 /// vkcppm SCENE ...
 struct RenderOptions {
-    std::filesystem::path scene;
+    SceneOptions scene;
     Settings settings;                          // ranges unchecked: resolve_settings does that
     std::filesystem::path output;               // EXR
     std::optional<std::filesystem::path> png;
@@ -33,7 +43,7 @@ struct CompareOptions {
 
 /// vkcppm info SCENE
 struct InfoOptions {
-    std::filesystem::path scene;
+    SceneOptions scene;
     bool json = false;
 };
 

@@ -28,6 +28,10 @@ Json settings_json(const Settings& settings) {
         json["size"] = fmt::format("{}x{}", settings.size->width, settings.size->height);
     }
     json["camera"] = settings.camera;
+    json["aperture"] = settings.aperture;
+    if (settings.focus_distance) {
+        json["focus_distance"] = *settings.focus_distance;
+    }
     json["seed"] = settings.seed;
     json["max_depth"] = settings.max_depth;
     json["knn"] = settings.knn;
@@ -40,18 +44,26 @@ Json settings_json(const Settings& settings) {
     return json;
 }
 
+const char* name_of(ThinGlass thin_glass) {
+    return thin_glass == ThinGlass::solid ? "solid" : "thin";
+}
+
 std::string hash_text(const Scene& scene) {
     return fmt::format("{:016x}", scene.hash);
 }
 
 }  // namespace
 
-ExrAttributes exr_attributes(const Scene& scene, const Rendering& rendering) {
+ExrAttributes exr_attributes(const SceneOptions& options, const Scene& scene, const Rendering& rendering) {
     Json json = settings_json(rendering.settings);
     json["iterations_done"] = rendering.report.iterations;
     json["emitted_photons"] = rendering.report.emitted_paths;
     json["scene"] = scene.file.filename().string();
     json["scene_hash"] = hash_text(scene);
+    if (options.environment) {
+        json["environment"] = options.environment->filename().string();
+    }
+    json["thin_glass"] = name_of(options.thin_glass);
     json["device"] = rendering.report.device;
     json["driver"] = rendering.report.driver;
     json["version"] = VKCPPM_VERSION;
@@ -62,13 +74,17 @@ ExrAttributes exr_attributes(const Scene& scene, const Rendering& rendering) {
     return attributes;
 }
 
-std::string stats_json(const Scene& scene, const Rendering& rendering) {
+std::string stats_json(const SceneOptions& options, const Scene& scene, const Rendering& rendering) {
     const Report& report = rendering.report;
     Json json;
     json["version"] = VKCPPM_VERSION;
     json["device"] = report.device;
     json["driver"] = report.driver;
-    json["scene"] = {{"file", scene.file.string()}, {"hash", hash_text(scene)}, {"triangles", scene.triangles.size()}};
+    json["scene"] = {{"file", scene.file.string()},
+                     {"hash", hash_text(scene)},
+                     {"triangles", scene.triangles.size()},
+                     {"environment", options.environment ? Json(options.environment->string()) : Json()},
+                     {"thin_glass", name_of(options.thin_glass)}};
     json["settings"] = settings_json(rendering.settings);
     json["totals"] = {{"iterations", report.iterations},
                       {"emitted_paths", report.emitted_paths},

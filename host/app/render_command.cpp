@@ -9,6 +9,7 @@
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/interrupt.h"
+#include "app/load.h"
 #include "app/progress.h"
 #include "app/record.h"
 #include "core/error.h"
@@ -16,21 +17,23 @@
 #include "io/exr.h"
 #include "io/png.h"
 #include "render/render.h"
-#include "scene/gltf.h"
 
 namespace vkcppm {
 namespace fs = std::filesystem;
 namespace {
 
-/// Refuses, before any time is spent, outputs that cannot be written or would overwrite the scene or one another.
+/// Refuses, before any time is spent, outputs that cannot be written or would overwrite an input or one another.
 void check_outputs(const RenderOptions& options) {
-    std::vector<fs::path> taken{fs::weakly_canonical(options.scene)};
+    std::vector<fs::path> taken{fs::weakly_canonical(options.scene.file)};
+    if (options.scene.environment) {
+        taken.push_back(fs::weakly_canonical(*options.scene.environment));
+    }
     const auto check = [&](const char* option, const fs::path& file) {
         const fs::path canonical = fs::weakly_canonical(file);
         for (const fs::path& other : taken) {
             if (canonical == other) {
                 throw Error(ExitCode::usage,
-                            fmt::format("{}: {} is the scene or another output", option, file.string()));
+                            fmt::format("{}: {} is an input or another output", option, file.string()));
             }
         }
         taken.push_back(canonical);
@@ -74,7 +77,7 @@ void write_outputs(const RenderOptions& options, const Scene& scene, const Rende
     };
     ExrChannels channels = to_channels(rendering.image);
     channels.values.insert(rendering.aovs.begin(), rendering.aovs.end());
-    write_exr(options.output, channels, exr_attributes(scene, rendering));
+    write_exr(options.output, channels, exr_attributes(options.scene, scene, rendering));
     if (interrupted()) {
         print_message(fmt::format("interrupted after {} iterations: wrote {}", rendering.report.iterations,
                                   options.output.string()));
@@ -86,7 +89,7 @@ void write_outputs(const RenderOptions& options, const Scene& scene, const Rende
         say_wrote(*options.png);
     }
     if (options.stats) {
-        write_file(*options.stats, stats_json(scene, rendering));
+        write_file(*options.stats, stats_json(options.scene, scene, rendering));
         say_wrote(*options.stats);
     }
 }
@@ -113,7 +116,7 @@ void check_validation(const Device& device) {
 void execute(const RenderOptions& options) {
     catch_interrupts();
     check_outputs(options);
-    const Scene scene = load_gltf(options.scene);
+    const Scene scene = load_scene(options.scene);
     print_warnings(scene.warnings);
     resolve_settings(options.settings, scene);  // a bad value is told before the device is asked for
     Device device(options.device);

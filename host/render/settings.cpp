@@ -55,6 +55,24 @@ Extent default_size(const Camera& camera) {
                          : Extent{side(default_longer_side * aspect), default_longer_side};
 }
 
+/// A lens has an opening and a distance at which it is sharp, or neither.
+void check_lens(double aperture, const std::optional<double>& focus_distance) {
+    if (!(aperture >= 0.0 && std::isfinite(aperture))) {
+        throw Error(ExitCode::usage, fmt::format("--aperture {} is not 0 or a finite number greater than 0", aperture));
+    }
+    if (focus_distance && !(*focus_distance > 0.0 && std::isfinite(*focus_distance))) {
+        throw Error(ExitCode::usage,
+                    fmt::format("--focus-distance {} is not a finite number greater than 0", *focus_distance));
+    }
+    if (aperture > 0.0 && !focus_distance) {
+        throw Error(ExitCode::usage, fmt::format("--aperture {} needs --focus-distance", aperture));
+    }
+    if (focus_distance && aperture == 0.0) {
+        throw Error(ExitCode::usage,
+                    fmt::format("--focus-distance {} needs --aperture greater than 0", *focus_distance));
+    }
+}
+
 }  // namespace
 
 Settings resolve_settings(const Settings& settings, const Scene& scene) {
@@ -63,6 +81,7 @@ Settings resolve_settings(const Settings& settings, const Scene& scene) {
     check_range<std::uint32_t>("--iterations", settings.iterations, 1, 0x7fffffffu);
     if (settings.seconds) check_open("--time", *settings.seconds, 0.0, 1e9);
     check_range<std::uint32_t>("--photons", settings.photons, 1, 1u << 24);
+    check_lens(settings.aperture, settings.focus_distance);
     check_range<std::uint32_t>("--max-depth", settings.max_depth, 1, 1024);
     check_range<std::uint32_t>("--knn", settings.knn, 2, 256);
     check_open("--alpha", settings.alpha, 0.0, 1.0);

@@ -184,7 +184,6 @@ public:
             scene_.cameras.push_back(framing_camera());
         }
         if (scene_.triangles.empty()) warnings_.add("there is no triangle", "the scene");
-        if (!has_light()) warnings_.add("there is no light, it is black", "the scene");
         scene_.hash = file_.hash;
         scene_.warnings = warnings_.lines(file_.name);
         return std::move(scene_);
@@ -667,6 +666,8 @@ private:
             warnings_.add("its mesh is dropped, the transform is singular", fmt::format("nodes[{}]", node));
             return;
         }
+        scene_.mesh_nodes.push_back(
+            {std::uint32_t(node), model_.nodes[node].name, std::uint32_t(scene_.triangles.size())});
         VertexBlocks blocks;
         for (std::size_t i = 0; i < model_.meshes[mesh].primitives.size(); ++i) {
             add_primitive(node, mesh, i, *placement, blocks);
@@ -781,12 +782,6 @@ private:
     }
 
     // ---- the whole ----
-
-    bool has_light() const {
-        return !scene_.lights.empty() || std::ranges::any_of(scene_.triangles, [&](const Triangle& triangle) {
-            return scene_.materials[triangle.material].emission != glm::vec3(0.0f);
-        });
-    }
 
     /// From slightly above the front (+z), far enough to see the bounding sphere whole where the image is not upright.
     Camera framing_camera() const {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "core/fnv1a.h"
 #include "scene/bad_scene.h"
 #include "scene/gltf_schema.h"
 #include "scene/uri.h"
@@ -47,13 +48,6 @@ void check_size(std::size_t size, std::string_view object, const std::string& fi
     if (size <= max_bytes) return;
     bad_scene(file, object, fmt::to_string(size), fmt::format("the limit is {} bytes", max_bytes));
 }
-
-/// FNV-1a, 64 bits, continued from `hash` (Fowler, Noll, Vo; draft-eastlake-fnv).
-std::uint64_t fnv1a(std::span<const std::uint8_t> bytes, std::uint64_t hash) {
-    for (const std::uint8_t byte : bytes) hash = (hash ^ byte) * 0x100000001b3u;
-    return hash;
-}
-constexpr std::uint64_t fnv1a_start = 0xcbf29ce484222325u;
 
 /// What a file holds before its JSON is parsed: views into its bytes.
 struct Container {

@@ -83,6 +83,13 @@ struct Triangle {
     std::uint32_t material;                // into Scene::materials
 };
 
+/// Where the triangles of a glTF node begin; they end where those of the next entry do.
+struct MeshNode {
+    std::uint32_t index = 0;               // into the file's nodes
+    std::string name;
+    std::uint32_t first_triangle = 0;      // into Scene::triangles
+};
+
 /// KHR_lights_punctual in world space. intensity: W/sr a channel (point, spot) or W/m^2 (directional).
 struct PunctualLight {
     enum class Kind { point, spot, directional };
@@ -121,6 +128,7 @@ struct Scene {
     std::vector<glm::vec4> colors;         // [V] linear, multiplies the base colour and its alpha
     std::vector<glm::vec4> tangents;       // [V] unit, w: sign of the bitangent cross(normal, tangent); 0: none given
     std::vector<Triangle> triangles;
+    std::vector<MeshNode> mesh_nodes;      // first_triangle ascends; empty where no file has named any
     std::vector<Material> materials;       // at least one where there are triangles
     std::vector<TextureImage> images;      // those that materials use
     std::vector<PunctualLight> lights;
