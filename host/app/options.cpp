@@ -119,7 +119,8 @@ bool parse(CLI::App& app, const Words& words, std::string& text) {
 
 void add_scene(CLI::App& app, SceneOptions& scene) {
     app.add_option("SCENE", scene.file, "glTF 2.0 file, .gltf or .glb")->required()->type_name("");
-    app.add_option("--environment", scene.environment, "Light from outside: a picture of all directions, EXR or Radiance")
+    app.add_option("--environment", scene.environment,
+                   "Light from outside: a picture of all directions, EXR or Radiance")
         ->type_name("FILE.exr|.hdr");
     add(app, "--thin-glass", "thin|solid", scene.thin_glass, parse_thin_glass,
         "Glass without a volume thickness: thin-walled, or solid where its mesh is closed (default: thin)");

@@ -55,9 +55,8 @@ void check(const Image& image, const fs::path& file) {
     const Extent& size = image.extent;
     if (size.pixels() > most_environment_pixels) {
         throw Error(ExitCode::bad_scene,
-                    fmt::format("{}: an environment of {}x{} pixels; the limit is {} in all, such as 4096x2048: scale it "
-                                "down",
-                                file.string(), size.width, size.height, most_environment_pixels));
+                    fmt::format("{}: it is {}x{} pixels, more than {} in all; scale it down", file.string(), size.width,
+                                size.height, most_environment_pixels));
     }
     for (std::size_t i = 0; i < image.rgb.size(); ++i) {
         const glm::vec3& v = image.rgb[i];

@@ -17,8 +17,8 @@
 namespace vkcppm {
 namespace {
 
-// What a source of light can be, with a wide margin on either side: what lies outside was most likely meant in lumen,
-// candela or lux, of which a watt of green light has 683.
+// What common sources of light have, with a wide margin on either side: what lies outside was most likely meant in
+// lumen, candela or lux, of which a watt of green light has 683. A searchlight's beam can be meant as it is.
 constexpr double most_intensity = 1e4;         // W/sr; a floodlight of 100 kW has 8e3 in every direction
 constexpr double most_irradiance = 1e4;        // W/m^2; the sun has 1361 above the air and 1e5 lux on the ground
 constexpr double most_radiance = 1e8;          // W m^-2 sr^-1; the sun's surface has 2e7
@@ -116,7 +116,8 @@ private:
     }
 
     std::string shell_name(const Shell& shell) const {
-        return fmt::format("{}, about {}", triangle_name(shell.triangles.front()), text(0.5 * (shell.low + shell.high)));
+        const glm::dvec3 centre = 0.5 * (shell.low + shell.high);
+        return fmt::format("{}, about {}", triangle_name(shell.triangles.front()), text(centre));
     }
 
     // ---- glass ----
@@ -255,8 +256,8 @@ private:
 
     void check_intensity(const std::string& name, double value, const char* unit, double least, double most) {
         if (value == 0.0 || (value >= least && value <= most)) return;
-        warnings_.add("not of the order of any source of light: intensities are in W/sr, W/m^2 and W m^-2 sr^-1, not "
-                      "in candela, lux or nits",
+        warnings_.add("of the order of no common source of light: intensities are in W/sr, W/m^2 and W m^-2 sr^-1, "
+                      "not in candela, lux or nits",
                       fmt::format("{} has {:.4g} {}", name, value, unit));
     }
 

@@ -128,7 +128,7 @@ struct Scene {
     std::vector<glm::vec4> colors;         // [V] linear, multiplies the base colour and its alpha
     std::vector<glm::vec4> tangents;       // [V] unit, w: sign of the bitangent cross(normal, tangent); 0: none given
     std::vector<Triangle> triangles;
-    std::vector<MeshNode> mesh_nodes;      // first_triangle ascends; empty where no file has named any
+    std::vector<MeshNode> mesh_nodes;      // first_triangle ascends; empty in a scene that is of no file
     std::vector<Material> materials;       // at least one where there are triangles
     std::vector<TextureImage> images;      // those that materials use
     std::vector<PunctualLight> lights;

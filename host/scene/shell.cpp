@@ -177,8 +177,11 @@ double winding_number(const Scene& scene, const Shell& shell, const glm::dvec3& 
         const std::array<glm::dvec3, 3> p = corners_of(scene, triangle);
         const glm::dvec3 a = p[0] - point, b = p[1] - point, c = p[2] - point;
         const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
-        half_angles += std::atan2(glm::dot(a, glm::cross(b, c)),
-                                  la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
+        const double y = glm::dot(a, glm::cross(b, c));
+        const double x = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
+        // A triangle that the point lies on covers half of all directions, of which side only rounding could tell.
+        const double least = 1e-9 * la * lb * lc;
+        if (std::abs(y) > least || x > least) half_angles += std::atan2(y, x);
     }
     return half_angles / (2.0 * std::numbers::pi);
 }

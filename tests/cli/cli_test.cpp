@@ -182,6 +182,31 @@ TEST_F(Cli, InfoTellsHowMaterialsAreTreated) {
 
 // ---- Comparing
 
+TEST_F(Cli, InfoTellsOfTheEnvironment) {
+    // Four rings of directions: the one round the pole has (1 - cos 45 degrees) / 2 of the sphere.
+    write_exr(folder_ / "sky.exr", Image{{1, 4}, {{8, 0, 0}, {0, 8, 0}, {0, 0, 8}, {0, 0, 8}}});
+    const auto result = run({"info", scene("caustic"), "--environment", "sky.exr", "--json"});
+    expect_done(result);
+    const Json info = Json::parse(result.out);
+    const Json& environment = info.at("environment");
+    EXPECT_EQ(environment.at("width"), 1);
+    EXPECT_EQ(environment.at("height"), 4);
+    const double pole = 0.5 * (1.0 - std::numbers::sqrt2 / 2.0);
+    EXPECT_NEAR(environment.at("mean_radiance")[0].get<double>(), 8.0 * pole, 1e-12);
+    EXPECT_NEAR(environment.at("mean_radiance")[1].get<double>(), 8.0 * (0.5 - pole), 1e-12);
+    EXPECT_NEAR(environment.at("mean_radiance")[2].get<double>(), 4.0, 1e-12);
+    EXPECT_EQ(info.at("vertex_attributes"), Json({"POSITION", "NORMAL"}));
+    EXPECT_EQ(info.at("images"), Json::array());
+
+    const auto plain = run({"info", scene("caustic"), "--environment", "sky.exr"});
+    expect_done(plain);
+    EXPECT_TRUE(contains(plain.out, "environment of 1x4, mean radiance (1.17157, 2.82843, 4)")) << plain.out;
+    const auto without = run({"info", scene("caustic"), "--json"});
+    expect_done(without);
+    EXPECT_TRUE(Json::parse(without.out).at("environment").is_null());
+    EXPECT_NE(Json::parse(without.out).at("hash"), info.at("hash"));
+}
+
 TEST_F(Cli, CompareGivesTheMeasures) {
     write_exr(folder_ / "a.exr", Image{{2, 1}, {{1.5f, 0.5f, 0.5f}, {0.5f, 0.0f, 0.25f}}});
     write_exr(folder_ / "r.exr", Image{{2, 1}, {{1.0f, 0.5f, 0.0f}, {1.0f, 0.5f, 0.25f}}});
@@ -255,6 +280,14 @@ TEST_F(Cli, EveryMisuseHasItsExitCodeAndItsLine) {
         {{"--estimator", "magic"}, 2, {"estimator", "magic", "cppm", "sppm-kz"}},
         {{"--camera", "nowhere"}, 2, {"camera", "nowhere"}},
         {{"--camera", "99"}, 2, {"camera", "99"}},
+        {{"--aperture", "-1", "--focus-distance", "1"}, 2, {"--aperture", "-1"}},
+        {{"--aperture", "0.1"}, 2, {"--aperture 0.1", "--focus-distance"}},
+        {{"--focus-distance", "1"}, 2, {"--focus-distance 1", "--aperture"}},
+        {{"--aperture", "0.1", "--focus-distance", "0"}, 2, {"--focus-distance", "0"}},
+        {{"--thin-glass", "thick"}, 2, {"--thin-glass", "thick"}},
+        {{"--environment", "missing.hdr"}, 66, {"missing.hdr"}},
+        {{"--environment", scene("caustic")}, 65, {"caustic.gltf", "OpenEXR"}},
+        {{"--environment", "caustic.exr"}, 2, {"-o", "caustic.exr"}},
         {{"--max-depth", "0"}, 2, {"max-depth", "0"}},
         {{"--max-depth", "1025"}, 2, {"max-depth", "1025", "1024"}},
         {{"--knn", "0"}, 2, {"knn", "0"}},
@@ -373,7 +406,8 @@ TEST_F(Cli, WritesPictureViewAndStatistics) {
         {"vkcppm.iterations", "2"},       {"vkcppm.iterations_done", "2"},   {"vkcppm.photons", "500"},
         {"vkcppm.size", "16x12"},         {"vkcppm.emitted_photons", "1000"}, {"vkcppm.max_depth", "64"},
         {"vkcppm.knn", "10"},             {"vkcppm.k", "0.8"},               {"vkcppm.beta", "1.2"},
-        {"vkcppm.significance", "0.05"},  {"vkcppm.rings", "2"},             {"vkcppm.sectors", "6"}};
+        {"vkcppm.significance", "0.05"},  {"vkcppm.rings", "2"},             {"vkcppm.sectors", "6"},
+        {"vkcppm.aperture", "0.0"},       {"vkcppm.thin_glass", "thin"}};
     for (const auto& [name, value] : expected) {
         ASSERT_TRUE(text.contains(name)) << name;
         EXPECT_EQ(text.at(name), value) << name;
@@ -405,6 +439,27 @@ TEST_F(Cli, WritesPictureViewAndStatistics) {
         device_seconds += pass.at("device_seconds").get<double>();
     }
     EXPECT_GT(device_seconds, 0.0);
+}
+
+TEST_F(Cli, TheRecordNamesTheEnvironmentAndTheLens) {
+    write_exr(folder_ / "sky.exr", Image{{2, 1}, {{1, 1, 1}, {2, 2, 2}}});
+    expect_done(render({"-o", "a.exr", "--stats", "a.json", "--environment", (folder_ / "sky.exr").string(),
+                        "--thin-glass", "solid", "--aperture", "0.125", "--focus-distance", "2.5"}));
+    const auto text = attributes("a.exr");
+    EXPECT_EQ(text.at("vkcppm.environment"), "sky.exr");
+    EXPECT_EQ(text.at("vkcppm.thin_glass"), "solid");
+    EXPECT_EQ(text.at("vkcppm.aperture"), "0.125");
+    EXPECT_EQ(text.at("vkcppm.focus_distance"), "2.5");
+    const Json stats = Json::parse(test::read_bytes(folder_ / "a.json"));
+    EXPECT_EQ(stats.at("scene").at("environment"), (folder_ / "sky.exr").string());
+    EXPECT_EQ(stats.at("scene").at("thin_glass"), "solid");
+    EXPECT_EQ(stats.at("settings").at("focus_distance"), 2.5);
+
+    expect_done(render({"-o", "b.exr"}));
+    EXPECT_FALSE(attributes("b.exr").contains("vkcppm.environment"));
+    EXPECT_FALSE(attributes("b.exr").contains("vkcppm.focus_distance"));
+    EXPECT_NE(attributes("b.exr").at("vkcppm.scene_hash"), text.at("vkcppm.scene_hash"));
+    expect_failure(render({"-o", "sky.exr", "--environment", "sky.exr"}), 2, {"-o", "sky.exr", "input"}, "overwrite");
 }
 
 TEST_F(Cli, ThePictureIsNamedAfterTheScene) {

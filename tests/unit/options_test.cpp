@@ -25,7 +25,9 @@ RenderOptions parse_render(std::vector<std::string> words) {
 
 TEST(Options, DefaultsAreThePapers) {
     const RenderOptions options = parse_render({});
-    EXPECT_EQ(options.scene, "scene.gltf");
+    EXPECT_EQ(options.scene.file, "scene.gltf");
+    EXPECT_FALSE(options.scene.environment);
+    EXPECT_EQ(options.scene.thin_glass, ThinGlass::thin);
     EXPECT_EQ(options.output, "scene.exr");
     EXPECT_EQ(options.settings.estimator, "cppm");
     EXPECT_EQ(options.settings.iterations, 64u);
@@ -33,6 +35,8 @@ TEST(Options, DefaultsAreThePapers) {
     EXPECT_EQ(options.settings.photons, 65536u);
     EXPECT_FALSE(options.settings.size);
     EXPECT_EQ(options.settings.camera, "");
+    EXPECT_EQ(options.settings.aperture, 0.0);
+    EXPECT_FALSE(options.settings.focus_distance);
     EXPECT_EQ(options.settings.max_depth, 64u);
     EXPECT_EQ(options.settings.knn, 10u);
     EXPECT_DOUBLE_EQ(options.settings.alpha, 2.0 / 3.0);
@@ -51,7 +55,12 @@ TEST(Options, EveryOptionReachesItsSetting) {
         "-o", "o.exr", "--png", "p.png", "--exposure", "-1.5", "--stats", "s.json", "--estimator", "sppm",
         "--iterations", "7", "--time", "2m", "--photons", "100", "--size", "32x16", "--camera", "top", "--seed", "5",
         "--max-depth", "9", "--knn", "11", "--alpha", "0.5", "--k", "0.25", "--beta", "1.5", "--significance", "0.01",
-        "--rings", "3", "--sectors", "4", "--device", "uuid:00", "--quiet", "--verbose", "--validate"});
+        "--rings", "3", "--sectors", "4", "--device", "uuid:00", "--quiet", "--verbose", "--validate",
+        "--environment", "sky.hdr", "--thin-glass", "solid", "--aperture", "0.01", "--focus-distance", "2.5"});
+    EXPECT_EQ(options.scene.environment, "sky.hdr");
+    EXPECT_EQ(options.scene.thin_glass, ThinGlass::solid);
+    EXPECT_EQ(options.settings.aperture, 0.01);
+    EXPECT_EQ(options.settings.focus_distance, 2.5);
     EXPECT_EQ(options.output, "o.exr");
     EXPECT_EQ(options.png, "p.png");
     EXPECT_EQ(options.exposure, -1.5);
@@ -102,12 +111,15 @@ TEST(Options, TheFirstWordChoosesTheCommand) {
     EXPECT_EQ(compare.image, "a.exr");
     EXPECT_EQ(compare.reference, "b.exr");
     EXPECT_TRUE(compare.json);
-    const auto info = std::get<InfoOptions>(parse({"info", "--json", "a.glb"}));
-    EXPECT_EQ(info.scene, "a.glb");
+    const auto info =
+        std::get<InfoOptions>(parse({"info", "--json", "a.glb", "--environment", "b.exr", "--thin-glass", "solid"}));
+    EXPECT_EQ(info.scene.file, "a.glb");
+    EXPECT_EQ(info.scene.environment, "b.exr");
+    EXPECT_EQ(info.scene.thin_glass, ThinGlass::solid);
     EXPECT_TRUE(info.json);
     EXPECT_FALSE(std::get<DevicesOptions>(parse({"devices"})).json);
-    EXPECT_EQ(std::get<RenderOptions>(parse({"./compare"})).scene, "./compare");
-    EXPECT_EQ(std::get<RenderOptions>(parse({"--quiet", "info"})).scene, "info");
+    EXPECT_EQ(std::get<RenderOptions>(parse({"./compare"})).scene.file, "./compare");
+    EXPECT_EQ(std::get<RenderOptions>(parse({"--quiet", "info"})).scene.file, "info");
 }
 
 TEST(Options, HelpNamesEveryOptionAndEstimator) {
@@ -116,7 +128,8 @@ TEST(Options, HelpNamesEveryOptionAndEstimator) {
          {"SCENE", "-o", "--estimator", "--iterations", "--time", "--photons", "--size", "--camera", "--seed",
           "--max-depth", "--knn", "--alpha", "--k ", "--beta", "--significance", "--device", "--stats", "--quiet",
           "--verbose", "--png", "--exposure", "--rings", "--sectors", "--validate", "--version", "cppm", "sppm:",
-          "sppm-kz", "compare", "info", "devices", "73"}) {
+          "sppm-kz", "compare", "info", "devices", "73", "--environment", "--thin-glass", "--aperture",
+          "--focus-distance"}) {
         EXPECT_NE(help.find(name), std::string::npos) << name << " is not in\n" << help;
     }
     EXPECT_NE(std::get<TextOptions>(parse({"compare", "--help"})).text.find("REFERENCE"), std::string::npos);
@@ -147,6 +160,12 @@ TEST(Options, RefuseEveryBadLineWithOptionValueAndRange) {
         {{"s", "--photons", "0x10"}, {"--photons", "'0x10'"}},
         {{"s", "--photons", " 1"}, {"--photons", "' 1'"}},
         {{"s", "--photons", "many"}, {"--photons", "'many'"}},
+        {{"s", "--thin-glass", "thick"}, {"--thin-glass", "'thick'", "thin or solid"}},
+        {{"info", "s", "--thin-glass", ""}, {"--thin-glass", "''", "thin or solid"}},
+        {{"info", "s", "--aperture", "1"}, {"--aperture"}},
+        {{"s", "--aperture", "wide"}, {"--aperture", "'wide'", "finite number"}},
+        {{"s", "--focus-distance", "inf"}, {"--focus-distance", "'inf'", "finite number"}},
+        {{"s", "--environment"}, {"--environment"}},
         {{"s", "--photons", "1", "--photons", "2"}, {"--photons"}},
         {{"s", "--iterations", "-5"}, {"--iterations", "'-5'"}},
         {{"s", "--seed", "-1"}, {"--seed", "'-1'"}},
