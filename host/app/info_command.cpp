@@ -14,6 +14,8 @@
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/load.h"
+#include "render/features.h"
+#include "render/flatten.h"
 #include "render/surface.h"
 
 namespace vkcppm {
@@ -139,7 +141,7 @@ Json json_of(const Environment& environment) {
             {"mean_radiance", json_of(mean_radiance(environment))}};
 }
 
-std::string json_text(const Scene& scene) {
+std::string json_text(const Scene& scene, const std::vector<Feature>& features) {
     Json json;
     json["scene"] = scene.file.string();
     json["hash"] = fmt::format("{:016x}", scene.hash);
@@ -173,11 +175,15 @@ std::string json_text(const Scene& scene) {
                                    {"aspect", camera.aspect ? Json(*camera.aspect) : Json()},
                                    {"position", json_of(camera.to_world[3])}});
     }
+    json["features"] = Json::array();
+    for (const Feature& feature : features) {
+        json["features"].push_back({{"name", feature.name}, {"reason", feature.reason}});
+    }
     json["warnings"] = scene.warnings;
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string plain_text(const Scene& scene) {
+std::string plain_text(const Scene& scene, const std::vector<Feature>& features) {
     std::string text = fmt::format("{}: {} triangles, {} vertices, hash {:016x}\n", scene.file.string(),
                                    scene.triangles.size(), scene.positions.size(), scene.hash);
     const auto out = std::back_inserter(text);
@@ -212,6 +218,9 @@ std::string plain_text(const Scene& scene) {
         fmt::format_to(out, "  {} '{}': {:g} degrees high{} at {}\n", i, camera.name, degrees(camera.yfov),
                        camera.aspect ? fmt::format(", aspect {:g},", *camera.aspect) : "", text_of(camera.to_world[3]));
     }
+    fmt::format_to(out, "{} features, which its kernels are specialised to\n", features.size());
+    for (const Feature& feature : features) fmt::format_to(out, "  {}: {}\n", feature.name, feature.reason);
+    text += gathering_rule() + "\n";
     return text;
 }
 
@@ -222,7 +231,8 @@ void execute(const InfoOptions& options) {
     for (const std::string& warning : scene.warnings) {
         print_message("warning: " + warning);
     }
-    print_result(options.json ? json_text(scene) : plain_text(scene));
+    const std::vector<Feature> features = flatten(scene).features;
+    print_result(options.json ? json_text(scene, features) : plain_text(scene, features));
 }
 
 }  // namespace vkcppm

@@ -112,9 +112,10 @@ std::uint32_t bits_of(const std::vector<Feature>& features) {
 }
 
 std::string gathering_rule() {
-    return "eye paths gather photons on diffuse lobes and follow lobes without roughness; a rough lobe is both followed, with\n"
-           "its own density p, and gathered on, as by k photons (--knn) of density cos/pi, weighed by the balance heuristic:\n"
-           "p / (p + k cos/pi) of its light is found by following, the rest by photons";
+    return "Eye paths gather photons on diffuse lobes and follow lobes without roughness. A rough lobe is both followed, with its\n"
+           "own density p, and gathered on, as by k photons (--knn) of density cos/pi, weighed by the balance heuristic: of its\n"
+           "light p / (p + k cos/pi) is found by following and the rest by photons. Light that comes straight from a punctual\n"
+           "light, which no path can meet, is brought by photons alone.";
 }
 
 }  // namespace vkcppm

@@ -154,8 +154,6 @@ FlatScene flatten(const Scene& scene) {
     add_lights(scene, flat);
     flat.features = features_of(scene, flat);
     add_attributes(scene, flat);
-    if (flat.lights.empty()) flat.warnings.push_back("the scene has no light: the picture is black");
-    if (scene.triangles.empty()) flat.warnings.push_back("the scene has no triangles: the picture is black");
     return flat;
 }
 

@@ -35,7 +35,6 @@ struct FlatScene {
     double radius = 0.0;                           // of the bounding sphere about the origin, frame units
     glm::vec3 low{0.0f};                           // bounds of the triangles, padded
     glm::vec3 high{0.0f};
-    std::vector<std::string> warnings;             // one line each
 };
 
 /// Throws Error(bad_scene) where a count is beyond what the kernels can index.

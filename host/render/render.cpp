@@ -51,7 +51,6 @@ Rendering render(const Scene& scene, const Settings& wanted, Device& device, con
     result.settings = resolve_settings(wanted, scene);
     const Settings& settings = result.settings;
     const FlatScene flat = flatten(scene);
-    result.warnings = flat.warnings;
     std::size_t camera = 0;
     std::from_chars(settings.camera.data(), settings.camera.data() + settings.camera.size(), camera);
     Integrator integrator(device, flat, scene.cameras.at(camera), settings);

@@ -31,7 +31,7 @@ struct Rendering {
     /// [P] each, where the settings ask for them: ppm.radius (m), ppm.photons, ppm.batch, ppm.rejections,
     /// ppm.statistic (over its threshold), ppm.iterations, Z (m along the camera's axis), Albedo.R/G/B, N.X/Y/Z.
     std::map<std::string, std::vector<float>> aovs;
-    std::vector<std::string> warnings;      // what the render leaves out of the scene, one line each
+    std::vector<std::string> warnings;      // what went wrong on the way, one line each
 };
 
 /// Throws Error(usage) where a setting is out of range, with its name, value and limit.

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "scene/glass.h"
+
 namespace vkcppm {
 namespace {
 
@@ -61,8 +63,8 @@ SurfaceTraits traits_of(const Scene& scene, const Material& m) {
     t.metal = m.metallic > 0.0f && m.base_color != black;
     t.diffuse = dielectric && opaque && m.base_color != black;
     t.coat = dielectric && opaque && m.specular > 0.0f;
-    t.glass = dielectric && m.transmission > 0.0f;
-    t.thin = t.glass && m.thickness == 0.0f;
+    t.glass = is_glass(m);
+    t.thin = t.glass && !is_solid_glass(m);
     t.absorbs = t.glass && !t.thin && std::isfinite(m.attenuation_distance) && m.attenuation_color != white;
     t.disperses = t.glass && !t.thin && m.dispersion > 0.0f && m.ior > 1.0f;
     t.rough = m.roughness > 0.0f;
