@@ -128,6 +128,16 @@ TEST(Diagnosis, LetsACavityBeInsideOut) {
     expect_told(scene, {});
 }
 
+TEST(Diagnosis, LetsABubbleBeInsideOut) {
+    Scene scene = glass_box();
+    const std::size_t first = scene.triangles.size();
+    test::add_sphere(scene, {0.5, 1.0, 1.5}, 0.3, 2, 0, true);
+    for (std::size_t i = first; i < scene.triangles.size(); ++i) {
+        std::swap(scene.triangles[i].vertex[1], scene.triangles[i].vertex[2]);
+    }
+    expect_told(scene, {});
+}
+
 TEST(Diagnosis, TellsOfAnInvertedMeshBesideOthers) {
     Scene scene = glass_box();
     test::add_box(scene, {5, 0, 0}, {6, 1, 1}, 0, true);
@@ -232,6 +242,8 @@ TEST(Diagnosis, NamesAnEmitterInsideSolidGlass) {
 TEST(Diagnosis, LetsGlassTouchALampOrGlow) {
     Scene scene = glass_box();
     test::add_quad(scene, {0.2, 0.0, 0.2}, {0.5, 0, 0}, {0, 0, 0.5}, 1);  // in the plane of the lower face
+    test::add_box(scene, {0.25, 0.25, 0.25}, {0.75, 1.75, 2.75}, 0, true);
+    test::add_quad(scene, {0.25, 0.5, 0.5}, {0, 1, 0}, {0, 0, 1}, 1);  // on the wall of a cavity
     expect_told(scene, {});
     scene.materials[0].emission = glm::vec3(1.0f);
     expect_told(scene, {});
