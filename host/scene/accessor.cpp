@@ -95,15 +95,19 @@ std::optional<std::size_t> bad_sparse_index(const AccessorView& accessor) {
     return std::nullopt;
 }
 
-std::vector<glm::dvec3> read_vec3(const AccessorView& accessor) {
+template <int N> std::vector<glm::vec<N, double>> read_vectors(const AccessorView& accessor) {
     const std::size_t size = component_size(accessor.type);
-    return read<glm::dvec3>(accessor, [&](const ElementBytes& elements, std::size_t i) {
+    return read<glm::vec<N, double>>(accessor, [&](const ElementBytes& elements, std::size_t i) {
         const std::uint8_t* bytes = elements.bytes.data() + i * elements.stride;
-        glm::dvec3 value;
-        for (int c = 0; c < 3; ++c) value[c] = load_component(bytes + c * size, accessor.type, accessor.normalized);
+        glm::vec<N, double> value;
+        for (int c = 0; c < N; ++c) value[c] = load_component(bytes + c * size, accessor.type, accessor.normalized);
         return value;
     });
 }
+
+template std::vector<glm::dvec2> read_vectors<2>(const AccessorView&);
+template std::vector<glm::dvec3> read_vectors<3>(const AccessorView&);
+template std::vector<glm::dvec4> read_vectors<4>(const AccessorView&);
 
 std::vector<std::uint32_t> read_indices(const AccessorView& accessor) {
     return read<std::uint32_t>(accessor, [&](const ElementBytes& elements, std::size_t i) {

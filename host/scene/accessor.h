@@ -7,7 +7,9 @@
 #include <span>
 #include <vector>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 namespace vkcppm {
 
@@ -47,8 +49,8 @@ struct AccessorView {
 /// The first sparse index that does not rise or is not below the count, where there is one.
 std::optional<std::size_t> bad_sparse_index(const AccessorView& accessor);
 
-/// [count] vectors of three components.
-std::vector<glm::dvec3> read_vec3(const AccessorView& accessor);
+/// [count] vectors of N components: 2, 3 or 4.
+template <int N> std::vector<glm::vec<N, double>> read_vectors(const AccessorView& accessor);
 
 /// [count] unsigned integers; the type is u8, u16 or u32.
 std::vector<std::uint32_t> read_indices(const AccessorView& accessor);

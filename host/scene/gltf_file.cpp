@@ -1,52 +1,26 @@
 #include "scene/gltf_file.h"
 
-#include <algorithm>
 #include <cctype>
 #include <cstring>
-#include <fstream>
 #include <optional>
 #include <span>
 
 #include "core/fnv1a.h"
 #include "scene/bad_scene.h"
 #include "scene/gltf_schema.h"
-#include "scene/uri.h"
+#include "scene/resource.h"
 
 namespace vkcppm {
 
 namespace {
 
 using nlohmann::json;
-using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::size_t max_bytes = std::size_t(1) << 32;  // of the file, and of its buffers together; a .glb ends there
 constexpr int max_json_depth = 64;  // nlohmann and tinygltf recurse over the tree
 
-/// The first `limit` bytes of a regular file, or all; nothing, and why, where it fails. A pipe or a device could block.
-std::optional<Bytes> read_bytes(const std::filesystem::path& path, std::size_t limit, std::string& why) {
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(path, error);
-    if (!std::filesystem::exists(status)) {
-        why = "no such file";
-        return std::nullopt;
-    }
-    if (!std::filesystem::is_regular_file(status)) {
-        why = "not a regular file";
-        return std::nullopt;
-    }
-    std::ifstream stream(path, std::ios::binary | std::ios::ate);
-    Bytes bytes(stream ? std::min(std::size_t(stream.tellg()), limit) : 0);
-    stream.seekg(0);
-    if (!stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()))) {
-        why = "cannot be read";
-        return std::nullopt;
-    }
-    return bytes;
-}
-
 void check_size(std::size_t size, std::string_view object, const std::string& file) {
-    if (size <= max_bytes) return;
-    bad_scene(file, object, fmt::to_string(size), fmt::format("the limit is {} bytes", max_bytes));
+    if (size <= max_gltf_bytes) return;
+    bad_scene(file, object, fmt::to_string(size), fmt::format("the limit is {} bytes", max_gltf_bytes));
 }
 
 /// What a file holds before its JSON is parsed: views into its bytes.
@@ -154,36 +128,20 @@ void check_version(const json& document, const std::string& file) {
 /// The bytes that buffers[i] names, byteLength or as many as there are; nothing, and why, where there are none at all.
 /// An external file's go into `hash` as well.
 std::optional<Bytes> read_buffer(const json& buffer, std::size_t i,
-                                 const std::optional<std::span<const std::uint8_t>>& binary,
-                                 const std::filesystem::path& folder, const std::string& file, std::uint64_t& hash,
-                                 std::string& why) {
-    const std::string object = fmt::format("buffers[{}]", i);
-    const auto uri = buffer.find("uri");
-    if (uri == buffer.end()) {
-        if (i == 0 && binary) return Bytes(binary->begin(), binary->end());
-        why = "it has no uri, and the file no binary chunk for it";
+                                 const std::optional<std::span<const std::uint8_t>>& binary, const std::string& file,
+                                 std::uint64_t& hash, std::string& why) {
+    if (const auto uri = buffer.find("uri"); uri != buffer.end()) {
+        return read_uri(*uri, buffer["byteLength"].get<std::size_t>(), fmt::format("buffers[{}].uri", i), file, hash,
+                        why);
+    }
+    static const json::json_pointer fallback_pointer("/extensions/EXT_meshopt_compression/fallback");
+    if (buffer.value(fallback_pointer, false)) {
+        why = "it is a fallback for programs without EXT_meshopt_compression, and holds nothing";
         return std::nullopt;
     }
-    const std::string& text = uri->get_ref<const std::string&>();
-    if (is_data_uri(text)) {
-        std::optional<Bytes> bytes = decode_data_uri(text);
-        if (!bytes) {
-            bad_scene(file, object + ".uri", json_text(text.substr(0, 50)),
-                      "its data must be valid base64 or percent-encoded");
-        }
-        return bytes;
-    }
-    const std::optional<std::filesystem::path> path = resolve_uri(folder, text);
-    if (!path) {
-        bad_scene(file, object + ".uri", json_text(*uri), "it must be a relative path inside the scene's folder");
-    }
-    std::optional<Bytes> bytes = read_bytes(*path, buffer["byteLength"].get<std::size_t>(), why);
-    if (bytes) {
-        hash = fnv1a(*bytes, hash);
-    } else {
-        why = fmt::format("{}: {}", json_text(*uri), why);
-    }
-    return bytes;
+    if (i == 0 && binary) return Bytes(binary->begin(), binary->end());
+    why = "it has no uri, and the file no binary chunk for it";
+    return std::nullopt;
 }
 
 }  // namespace
@@ -191,7 +149,7 @@ std::optional<Bytes> read_buffer(const json& buffer, std::size_t i,
 GltfFile read_gltf_file(const std::filesystem::path& path) {
     GltfFile file{.name = path.string(), .document = {}, .buffers = {}, .hash = fnv1a_start};
     std::string why;
-    const std::optional<Bytes> bytes = read_bytes(path, max_bytes + 1, why);
+    const std::optional<Bytes> bytes = read_bytes(path, max_gltf_bytes + 1, why);
     if (!bytes) throw Error(ExitCode::no_input, fmt::format("{}: {}", file.name, why));
     check_size(bytes->size(), "the size of the file", file.name);
     file.hash = fnv1a(*bytes, file.hash);
@@ -212,8 +170,7 @@ GltfFile read_gltf_file(const std::filesystem::path& path) {
         buffer.size = buffers[i]["byteLength"].get<std::size_t>();
         total_size += buffer.size;
         check_size(total_size, "the byteLength of the buffers together", file.name);
-        std::optional<Bytes> data = read_buffer(buffers[i], i, container.binary, path.parent_path(), file.name,
-                                                file.hash, buffer.absent);
+        std::optional<Bytes> data = read_buffer(buffers[i], i, container.binary, file.name, file.hash, buffer.absent);
         if (!data) continue;
         if (buffer.size > data->size()) {
             bad_scene(file.name, fmt::format("buffers[{}].byteLength", i), fmt::to_string(buffer.size),

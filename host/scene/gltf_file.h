@@ -10,6 +10,9 @@
 
 namespace vkcppm {
 
+/// Of the file, of its buffers together, of all that they expand to, and of an image.
+constexpr std::size_t max_gltf_bytes = std::size_t(1) << 32;
+
 struct GltfBuffer {
     std::size_t size = 0;             // byteLength
     std::vector<std::uint8_t> bytes;  // [size], or none where there is no such data

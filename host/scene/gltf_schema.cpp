@@ -15,7 +15,9 @@ namespace {
 
 using nlohmann::json;
 
-enum class Kind { boolean, string, number, numbers, integer, index, indices, index_map, object, objects };
+enum class Kind {
+    boolean, string, number, numbers, integer, index, indices, index_map, index_maps, object, objects
+};
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double int_limit = std::numeric_limits<std::int32_t>::max();  // tinygltf holds these members as int
@@ -27,12 +29,13 @@ struct Field {
     Kind kind;
     bool required = false;
     std::span<const Field> fields{};  // object, objects: the members
-    const char* collection = "";      // index, indices, index_map: JSON pointer to the array referred to
+    const char* collection = "";      // index, indices, index_map(s): JSON pointer to the array referred to
     std::size_t length = 0;           // numbers: how many; 0 is any number of them
     double minimum = -infinity;       // integer
     double maximum = infinity;        // integer
     unsigned multiple = 1;            // integer: a multiple of this
     std::span<const std::string_view> choices{};  // string
+    std::span<const int> values{};    // integer: any where empty
 };
 
 constexpr Field object(const char* name, std::span<const Field> fields, bool required = false) {
@@ -53,27 +56,61 @@ constexpr Field numbers(const char* name, std::size_t length) {
 constexpr Field integer(const char* name, double minimum, double maximum, bool required = false) {
     return {.name = name, .kind = Kind::integer, .required = required, .minimum = minimum, .maximum = maximum};
 }
+constexpr Field enumeration(const char* name, std::span<const int> values) {
+    return {.name = name, .kind = Kind::integer, .values = values};
+}
+constexpr Field choice(const char* name, std::span<const std::string_view> choices, bool required = false) {
+    return {.name = name, .kind = Kind::string, .required = required, .choices = choices};
+}
+constexpr Field index_map(const char* name, bool required = false) {
+    return {.name = name, .kind = Kind::index_map, .required = required, .collection = "/accessors"};
+}
 constexpr Field text(const char* name) { return {.name = name, .kind = Kind::string}; }
 
 constexpr std::string_view accessor_types[] = {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"};
 constexpr std::string_view camera_types[] = {"perspective", "orthographic"};
 constexpr std::string_view light_types[] = {"directional", "point", "spot"};
 constexpr std::string_view alpha_modes[] = {"OPAQUE", "MASK", "BLEND"};
+constexpr std::string_view meshopt_modes[] = {"ATTRIBUTES", "TRIANGLES", "INDICES"};
+constexpr std::string_view meshopt_filters[] = {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"};
+constexpr int mag_filters[] = {9728, 9729};
+constexpr int min_filters[] = {9728, 9729, 9984, 9985, 9986, 9987};
+constexpr int wraps[] = {10497, 33071, 33648};
 
 constexpr std::string_view supported_extensions[] = {
-    "KHR_lights_punctual",        "KHR_materials_emissive_strength", "KHR_materials_ior",    "KHR_materials_specular",
-    "KHR_materials_transmission", "KHR_materials_volume",            "KHR_mesh_quantization",
+    "EXT_mesh_gpu_instancing",        "EXT_meshopt_compression", "KHR_lights_punctual",
+    "KHR_materials_clearcoat",        "KHR_materials_dispersion", "KHR_materials_emissive_strength",
+    "KHR_materials_ior",              "KHR_materials_specular",  "KHR_materials_transmission",
+    "KHR_materials_unlit",            "KHR_materials_volume",    "KHR_mesh_quantization",
+    "KHR_texture_transform",
 };
 
 constexpr const char* lights_pointer = "/extensions/KHR_lights_punctual/lights";
 
-constexpr Field buffer_fields[] = {integer("byteLength", 1, byte_limit, true), text("uri")};
+constexpr Field fallback_fields[] = {{.name = "fallback", .kind = Kind::boolean}};
+constexpr Field buffer_extension_fields[] = {object("EXT_meshopt_compression", fallback_fields)};
+constexpr Field buffer_fields[] = {
+    integer("byteLength", 1, byte_limit, true),
+    text("uri"),
+    object("extensions", buffer_extension_fields),
+};
 
+constexpr Field meshopt_fields[] = {
+    index("buffer", "/buffers", true),
+    integer("byteOffset", 0, byte_limit),
+    integer("byteLength", 1, byte_limit, true),
+    integer("byteStride", 2, 256, true),
+    integer("count", 1, byte_limit, true),
+    choice("mode", meshopt_modes, true),
+    choice("filter", meshopt_filters),
+};
+constexpr Field buffer_view_extension_fields[] = {object("EXT_meshopt_compression", meshopt_fields)};
 constexpr Field buffer_view_fields[] = {
     index("buffer", "/buffers", true),
     integer("byteOffset", 0, byte_limit),
     integer("byteLength", 1, byte_limit, true),
     {.name = "byteStride", .kind = Kind::integer, .minimum = 4, .maximum = 252, .multiple = 4},
+    object("extensions", buffer_view_extension_fields),
 };
 
 constexpr Field sparse_indices_fields[] = {
@@ -96,20 +133,25 @@ constexpr Field accessor_fields[] = {
     integer("componentType", 5120, 5126, true),
     {.name = "normalized", .kind = Kind::boolean},
     integer("count", 1, byte_limit, true),
-    {.name = "type", .kind = Kind::string, .required = true, .choices = accessor_types},
+    choice("type", accessor_types, true),
     object("sparse", sparse_fields),
 };
 
 constexpr Field primitive_fields[] = {
-    {.name = "attributes", .kind = Kind::index_map, .required = true, .collection = "/accessors"},
+    index_map("attributes", true),
     index("indices", "/accessors"),
     index("material", "/materials"),
     integer("mode", 0, 6),
+    {.name = "targets", .kind = Kind::index_maps, .collection = "/accessors"},
 };
-constexpr Field mesh_fields[] = {objects("primitives", primitive_fields, true), text("name")};
+constexpr Field mesh_fields[] = {objects("primitives", primitive_fields, true), text("name"), numbers("weights", 0)};
 
 constexpr Field node_light_fields[] = {index("light", lights_pointer, true)};
-constexpr Field node_extension_fields[] = {object("KHR_lights_punctual", node_light_fields)};
+constexpr Field instancing_fields[] = {index_map("attributes", true)};
+constexpr Field node_extension_fields[] = {
+    object("KHR_lights_punctual", node_light_fields),
+    object("EXT_mesh_gpu_instancing", instancing_fields),
+};
 constexpr Field node_fields[] = {
     text("name"),
     index("camera", "/cameras"),
@@ -119,6 +161,7 @@ constexpr Field node_fields[] = {
     numbers("translation", 3),
     numbers("rotation", 4),
     numbers("scale", 3),
+    numbers("weights", 0),
     object("extensions", node_extension_fields),
 };
 
@@ -129,35 +172,69 @@ constexpr Field perspective_fields[] = {
 constexpr Field orthographic_fields[] = {
     number("xmag", true), number("ymag", true), number("znear", true), number("zfar", true)};
 constexpr Field camera_fields[] = {
-    {.name = "type", .kind = Kind::string, .required = true, .choices = camera_types},
+    choice("type", camera_types, true),
     text("name"),
     object("perspective", perspective_fields),
     object("orthographic", orthographic_fields),
 };
 
-constexpr Field texture_fields[] = {index("index", "/textures", true)};
+constexpr Field sampler_fields[] = {
+    enumeration("magFilter", mag_filters),
+    enumeration("minFilter", min_filters),
+    enumeration("wrapS", wraps),
+    enumeration("wrapT", wraps),
+};
+constexpr Field image_fields[] = {text("name"), text("uri"), text("mimeType"), index("bufferView", "/bufferViews")};
+constexpr Field texture_fields[] = {index("sampler", "/samplers"), index("source", "/images")};
+
+constexpr Field texture_transform_fields[] = {
+    numbers("offset", 2),
+    number("rotation"),
+    numbers("scale", 2),
+    integer("texCoord", 0, int_limit),
+};
+constexpr Field texture_info_extension_fields[] = {object("KHR_texture_transform", texture_transform_fields)};
+constexpr Field texture_info_fields[] = {
+    index("index", "/textures", true),
+    integer("texCoord", 0, int_limit),
+    object("extensions", texture_info_extension_fields),
+};
+constexpr Field normal_texture_fields[] = {
+    index("index", "/textures", true),
+    integer("texCoord", 0, int_limit),
+    number("scale"),
+    object("extensions", texture_info_extension_fields),
+};
 constexpr Field pbr_fields[] = {
     numbers("baseColorFactor", 4),
     number("metallicFactor"),
     number("roughnessFactor"),
-    object("baseColorTexture", texture_fields),
-    object("metallicRoughnessTexture", texture_fields),
+    object("baseColorTexture", texture_info_fields),
+    object("metallicRoughnessTexture", texture_info_fields),
 };
 constexpr Field emissive_strength_fields[] = {number("emissiveStrength")};
 constexpr Field transmission_fields[] = {
-    number("transmissionFactor"), object("transmissionTexture", texture_fields)};
+    number("transmissionFactor"), object("transmissionTexture", texture_info_fields)};
+constexpr Field clearcoat_fields[] = {
+    number("clearcoatFactor"),
+    object("clearcoatTexture", texture_info_fields),
+    number("clearcoatRoughnessFactor"),
+    object("clearcoatRoughnessTexture", texture_info_fields),
+    object("clearcoatNormalTexture", normal_texture_fields),
+};
+constexpr Field dispersion_fields[] = {number("dispersion")};
 constexpr Field ior_fields[] = {number("ior")};
 constexpr Field volume_fields[] = {
     number("thicknessFactor"),
     number("attenuationDistance"),
     numbers("attenuationColor", 3),
-    object("thicknessTexture", texture_fields),
+    object("thicknessTexture", texture_info_fields),
 };
 constexpr Field specular_fields[] = {
     number("specularFactor"),
     numbers("specularColorFactor", 3),
-    object("specularTexture", texture_fields),
-    object("specularColorTexture", texture_fields),
+    object("specularTexture", texture_info_fields),
+    object("specularColorTexture", texture_info_fields),
 };
 constexpr Field material_extension_fields[] = {
     object("KHR_materials_emissive_strength", emissive_strength_fields),
@@ -165,15 +242,19 @@ constexpr Field material_extension_fields[] = {
     object("KHR_materials_ior", ior_fields),
     object("KHR_materials_volume", volume_fields),
     object("KHR_materials_specular", specular_fields),
+    object("KHR_materials_clearcoat", clearcoat_fields),
+    object("KHR_materials_dispersion", dispersion_fields),
+    object("KHR_materials_unlit", {}),
 };
 constexpr Field material_fields[] = {
     text("name"),
     object("pbrMetallicRoughness", pbr_fields),
-    object("normalTexture", texture_fields),
-    object("occlusionTexture", texture_fields),
-    object("emissiveTexture", texture_fields),
+    object("normalTexture", normal_texture_fields),
+    object("occlusionTexture", texture_info_fields),
+    object("emissiveTexture", texture_info_fields),
     numbers("emissiveFactor", 3),
-    {.name = "alphaMode", .kind = Kind::string, .choices = alpha_modes},
+    choice("alphaMode", alpha_modes),
+    number("alphaCutoff"),
     {.name = "doubleSided", .kind = Kind::boolean},
     object("extensions", material_extension_fields),
 };
@@ -181,7 +262,7 @@ constexpr Field material_fields[] = {
 constexpr Field spot_fields[] = {number("innerConeAngle"), number("outerConeAngle")};
 constexpr Field light_fields[] = {
     text("name"),
-    {.name = "type", .kind = Kind::string, .required = true, .choices = light_types},
+    choice("type", light_types, true),
     numbers("color", 3),
     number("intensity"),
     number("range"),
@@ -199,7 +280,9 @@ constexpr Field root_fields[] = {
     objects("bufferViews", buffer_view_fields),
     objects("buffers", buffer_fields),
     objects("materials", material_fields),
-    objects("textures", {}),
+    objects("textures", texture_fields),
+    objects("images", image_fields),
+    objects("samplers", sampler_fields),
     objects("cameras", camera_fields),
     object("extensions", root_extension_fields),
 };
@@ -238,10 +321,11 @@ private:
                     check_index(value[i], element(path, i), field.collection);
                 }
                 break;
-            case Kind::index_map:
-                if (!value.is_object()) fail(path, value, "it must be an object");
-                for (auto& [name, target] : value.items()) {
-                    check_index(target, path + "[" + json_text(name) + "]", field.collection);
+            case Kind::index_map: check_index_map(value, path, field.collection); break;
+            case Kind::index_maps:
+                check_array(value, path);
+                for (std::size_t i = 0; i < value.size(); ++i) {
+                    check_index_map(value[i], element(path, i), field.collection);
                 }
                 break;
             case Kind::object: check_object(value, path, field.fields); break;
@@ -269,7 +353,7 @@ private:
 
     void check_numbers(json& value, const std::string& path, std::size_t length) const {
         check_array(value, path);
-        if (value.size() != length) {
+        if (length > 0 && value.size() != length) {
             bad_scene(file_, path, fmt::format("an array of {}", value.size()), fmt::format("it must hold {}", length));
         }
         for (std::size_t i = 0; i < value.size(); ++i) check_number(value[i], element(path, i));
@@ -283,6 +367,16 @@ private:
         }
         if (value.get<std::uint64_t>() % field.multiple != 0) {
             fail(path, value, fmt::format("it must be a multiple of {}", field.multiple));
+        }
+        if (!field.values.empty() && std::ranges::find(field.values, number) == field.values.end()) {
+            fail(path, value, fmt::format("it must be one of {}", fmt::join(field.values, ", ")));
+        }
+    }
+
+    void check_index_map(const json& value, const std::string& path, const char* collection) const {
+        if (!value.is_object()) fail(path, value, "it must be an object");
+        for (const auto& [name, target] : value.items()) {
+            check_index(target, path + "[" + json_text(name) + "]", collection);
         }
     }
 

@@ -32,10 +32,10 @@ glm::dvec3 normalized(ComponentType type, T low, T high) {
     view.type = type;
     view.normalized = true;
     view.base = ElementBytes{{reinterpret_cast<const std::uint8_t*>(values), sizeof values}, sizeof values};
-    return read_vec3(view)[0];
+    return read_vectors<3>(view)[0];
 }
 
-TEST(ReadVec3, NormalizesIntegersAsTheSpecificationSays) {
+TEST(ReadVectors, NormalizesIntegersAsTheSpecificationSays) {
     EXPECT_EQ(normalized<std::int8_t>(ComponentType::i8, -128, 127), glm::dvec3(0, -1, 1));
     EXPECT_EQ(normalized<std::int8_t>(ComponentType::i8, -127, 1), glm::dvec3(0, -1, 1.0 / 127));
     EXPECT_EQ(normalized<std::uint8_t>(ComponentType::u8, 51, 255), glm::dvec3(0, 0.2, 1));

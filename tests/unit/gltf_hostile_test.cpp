@@ -10,32 +10,15 @@
 #include <gtest/gtest.h>
 
 #include "scene/gltf.h"
-#include "support/files.h"
-#include "support/gltf_builder.h"
-#include "support/temporary_folder.h"
+#include "support/loading.h"
 #include "support/thrown.h"
 
 namespace vkcppm {
 namespace {
 
 using nlohmann::json;
+using test::expect_bad_scene;
 using test::GltfBuilder;
-
-/// Loads `bytes` as <folder>/hostile.gltf and holds its Error to account.
-void expect_bad_scene(const std::string& bytes, const std::vector<std::string>& parts) {
-    const test::TemporaryFolder folder;
-    const std::filesystem::path file = folder / "hostile.gltf";
-    test::write_bytes(file, bytes);
-    const auto error = test::thrown_by([&] { load_gltf(file); });
-    ASSERT_TRUE(error) << "the file was accepted";
-    const std::string message = error->what();
-    EXPECT_EQ(error->code(), ExitCode::bad_scene) << message;
-    EXPECT_TRUE(message.starts_with(file.string() + ": ")) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-    for (const std::string& part : parts) {
-        EXPECT_NE(message.find(part), std::string::npos) << part << " not in: " << message;
-    }
-}
 
 /// A change to the file of one triangle that makes it malformed, and what the message must hold.
 struct Fault {

@@ -12,26 +12,20 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "support/files.h"
-#include "support/gltf_builder.h"
-#include "support/temporary_folder.h"
+#include "support/loading.h"
 
 namespace vkcppm {
 namespace {
 
 using nlohmann::json;
+using test::all_warnings;
 using test::Float3;
 using test::GltfBuilder;
+using test::load;
+using test::load_text;
+using test::warnings_with;
 
 constexpr float float_nan = std::numeric_limits<float>::quiet_NaN();
-
-Scene load_text(const std::string& text) {
-    const test::TemporaryFolder folder;
-    test::write_bytes(folder / "scene.gltf", text);
-    return load_gltf(folder / "scene.gltf");
-}
-
-Scene load(const GltfBuilder& builder) { return load_text(builder.gltf()); }
 
 std::string text_of(const glm::dvec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
 
@@ -63,18 +57,6 @@ glm::dvec3 geometric_normal(const Scene& scene, const Triangle& triangle) {
     const glm::dvec3 p1 = scene.positions[triangle.vertex[1]], p2 = scene.positions[triangle.vertex[2]];
     return glm::normalize(glm::cross(p1 - p0, p2 - p0));
 }
-
-/// How many warnings hold all of the parts.
-int warnings_with(const Scene& scene, const std::vector<std::string>& parts) {
-    return int(std::ranges::count_if(scene.warnings, [&](const std::string& line) {
-        return std::ranges::all_of(parts, [&](const std::string& part) { return line.find(part) != line.npos; });
-    }));
-}
-
-std::string all_warnings(const Scene& scene) { return fmt::format("{}", fmt::join(scene.warnings, "\n")); }
-
-#define EXPECT_ONE_WARNING(scene, ...) \
-    EXPECT_EQ(warnings_with(scene, {__VA_ARGS__}), 1) << "the warnings are:\n" << all_warnings(scene)
 
 // ---- containers and scenes ----
 
@@ -375,20 +357,13 @@ TEST(Gltf, SharesTheVerticesOfPrimitivesWithTheSameAttributes) {
                            {0, 0, 5}, {1, 0, 5}, {0, 1, 5}, {0, 1, 5}, {1, 0, 5}, {1, 1, 5}});
 }
 
-TEST(Gltf, IgnoresSkinsMorphTargetsAnimationsColoursAndAlphaWithOneWarningEach) {
+TEST(Gltf, IgnoresSkinsAndAnimationsWithOneWarningEach) {
     GltfBuilder builder = test::one_triangle();
-    json& primitive = builder.document["meshes"][0]["primitives"][0];
-    primitive["targets"] = {{{"POSITION", 0}}};
-    primitive["attributes"]["COLOR_0"] = 0;
-    primitive["material"] = builder.add("materials", {{"alphaMode", "BLEND"}});
     builder.document["nodes"][0]["skin"] = builder.add("skins", {{"joints", {0}}});
     builder.add("animations", json::object());
     const Scene scene = load(builder);
     expect_corners(scene, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
     EXPECT_ONE_WARNING(scene, "nodes[0]", "skin");
-    EXPECT_ONE_WARNING(scene, "meshes[0].primitives[0]", "morph targets");
-    EXPECT_ONE_WARNING(scene, "meshes[0].primitives[0]", "vertex colours");
-    EXPECT_ONE_WARNING(scene, "materials[0].alphaMode");
     EXPECT_ONE_WARNING(scene, "animations");
 }
 
@@ -534,76 +509,7 @@ TEST(Gltf, ClampsConesWithAWarning) {
     EXPECT_EQ(warnings_with(rounded, {"clamped"}), 0) << all_warnings(rounded);
 }
 
-// ---- materials and extensions ----
-
-Scene load_material(const json& material) {
-    GltfBuilder builder = test::one_triangle();
-    builder.document["meshes"][0]["primitives"][0]["material"] = builder.add("materials", material);
-    builder.document["textures"] = {json::object()};
-    return load(builder);
-}
-
-TEST(Gltf, ReadsEveryFactorOfAMaterial) {
-    const Material m = load_material({
-        {"name", "all"},
-        {"doubleSided", true},
-        {"pbrMetallicRoughness",
-         {{"baseColorFactor", {0.1, 0.2, 0.3, 0.5}}, {"metallicFactor", 0.25}, {"roughnessFactor", 0.75}}},
-        {"emissiveFactor", {1, 0.5, 0.25}},
-        {"extensions",
-         {{"KHR_materials_emissive_strength", {{"emissiveStrength", 5000000000}}},  // above 2^32
-          {"KHR_materials_transmission", {{"transmissionFactor", 0.9}}},
-          {"KHR_materials_ior", {{"ior", 1.6}}},
-          {"KHR_materials_volume",
-           {{"thicknessFactor", 2}, {"attenuationDistance", 3}, {"attenuationColor", {0.5, 0.6, 0.7}}}},
-          {"KHR_materials_specular", {{"specularFactor", 0}, {"specularColorFactor", {1, 2, 3}}}}}},
-    }).materials.at(0);
-    EXPECT_EQ(m.name, "all");
-    EXPECT_TRUE(m.double_sided);
-    EXPECT_EQ(m.base_color, glm::vec3(0.1f, 0.2f, 0.3f));
-    EXPECT_EQ(m.metallic, 0.25f);
-    EXPECT_EQ(m.roughness, 0.75f);
-    EXPECT_EQ(m.emission, glm::vec3(5e9f, 2.5e9f, 1.25e9f));
-    EXPECT_EQ(m.transmission, 0.9f);
-    EXPECT_EQ(m.ior, 1.6f);
-    EXPECT_EQ(m.thickness, 2.0f);
-    EXPECT_EQ(m.attenuation_distance, 3.0f);
-    EXPECT_EQ(m.attenuation_color, glm::vec3(0.5f, 0.6f, 0.7f));
-    EXPECT_EQ(m.specular, 0.0f);
-    EXPECT_EQ(m.specular_color, glm::vec3(1, 2, 3));
-}
-
-TEST(Gltf, GivesGltfsDefaultsToAnEmptyMaterialAndToNone) {
-    const Scene none = load(test::one_triangle());
-    ASSERT_EQ(none.materials.size(), 1u);
-    EXPECT_EQ(none.triangles.at(0).material, 0u);
-    for (const Material& m : {load_material(json::object()).materials.at(0), none.materials[0]}) {
-        EXPECT_EQ(m.base_color, glm::vec3(1));
-        EXPECT_EQ(m.metallic, 1.0f);
-        EXPECT_EQ(m.roughness, 1.0f);
-        EXPECT_EQ(m.emission, glm::vec3(0));
-        EXPECT_EQ(m.transmission, 0.0f);
-        EXPECT_EQ(m.thickness, 0.0f);
-        EXPECT_EQ(m.ior, 1.5f);
-        EXPECT_EQ(m.specular, 1.0f);
-        EXPECT_EQ(m.specular_color, glm::vec3(1));
-        EXPECT_EQ(m.attenuation_distance, std::numeric_limits<float>::infinity());
-        EXPECT_FALSE(m.double_sided);
-    }
-}
-
-TEST(Gltf, KeepsAnIorOfZeroThatStandsForInfinity) {
-    EXPECT_EQ(load_material({{"extensions", {{"KHR_materials_ior", {{"ior", 0}}}}}}).materials.at(0).ior, 0.0f);
-}
-
-TEST(Gltf, ClampsFactorsOutsideTheirRangeWithOneWarning) {
-    const Scene scene = load_material({{"pbrMetallicRoughness", {{"metallicFactor", 3}, {"roughnessFactor", -1}}},
-                                       {"extensions", {{"KHR_materials_ior", {{"ior", 0.5}}}}}});
-    EXPECT_EQ(scene.materials.at(0).metallic, 1.0f);
-    EXPECT_EQ(scene.materials.at(0).roughness, 0.0f);
-    EXPECT_EQ(scene.materials.at(0).ior, 1.0f);
-    EXPECT_ONE_WARNING(scene, "materials[0].metallicFactor = 3", "(and 2 more)", "clamped");
-}
+// ---- extensions ----
 
 TEST(Gltf, WarnsOnceOfAllUnknownExtensions) {
     GltfBuilder builder = test::one_triangle();

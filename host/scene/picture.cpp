@@ -1,0 +1,157 @@
+#include "scene/picture.h"
+
+#include <algorithm>
+#include <array>
+#include <csetjmp>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <png.h>
+#include <turbojpeg.h>
+
+namespace vkcppm {
+
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+bool starts_with(Bytes bytes, std::string_view signature) {
+    return bytes.size() >= signature.size() && std::memcmp(bytes.data(), signature.data(), signature.size()) == 0;
+}
+
+bool is_png(Bytes bytes) { return starts_with(bytes, "\x89PNG\r\n\x1a\n"); }
+bool is_jpeg(Bytes bytes) { return starts_with(bytes, "\xff\xd8\xff"); }
+
+/// What the bytes are instead, for the message.
+[[noreturn]] void refuse_format(Bytes bytes) {
+    const bool is_webp = starts_with(bytes, "RIFF") && bytes.size() >= 12 && starts_with(bytes.subspan(8), "WEBP");
+    const char* format = is_webp                                ? "WebP"
+                         : starts_with(bytes, "\xabKTX 20\xbb") ? "KTX2"
+                         : starts_with(bytes, "DDS ")           ? "DDS"
+                         : starts_with(bytes, "GIF8")           ? "GIF"
+                                                                : "something else";
+    throw std::runtime_error(fmt::format("it is {}, not PNG or JPEG", format));
+}
+
+/// libpng over bytes in memory. Its errors are long jumps: they cross no frame but libpng's and guarded()'s, and none
+/// of them holds anything to destroy.
+class PngReader {
+public:
+    explicit PngReader(Bytes bytes) : rest_(bytes) {
+        png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, on_error, on_warning);
+        info_ = png_ ? png_create_info_struct(png_) : nullptr;
+        if (!info_) {
+            png_destroy_read_struct(&png_, nullptr, nullptr);
+            throw std::bad_alloc();
+        }
+        png_set_read_fn(png_, this, on_read);
+        guarded([](PngReader& reader) { png_read_info(reader.png_, reader.info_); });
+    }
+    PngReader(const PngReader&) = delete;
+    PngReader& operator=(const PngReader&) = delete;
+    ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+
+    Extent size() const { return {png_get_image_width(png_, info_), png_get_image_height(png_, info_)}; }
+
+    std::vector<std::uint8_t> rgba() {
+        guarded([](PngReader& reader) {
+            png_set_expand(reader.png_);
+            png_set_scale_16(reader.png_);
+            png_set_gray_to_rgb(reader.png_);
+            png_set_add_alpha(reader.png_, 0xff, PNG_FILLER_AFTER);
+            png_set_interlace_handling(reader.png_);
+            png_read_update_info(reader.png_, reader.info_);
+        });
+        const std::size_t stride = 4 * std::size_t(size().width);
+        std::vector<std::uint8_t> texels(stride * size().height);
+        rows_.resize(size().height);
+        for (std::size_t y = 0; y < rows_.size(); ++y) rows_[y] = texels.data() + y * stride;
+        guarded([](PngReader& reader) { png_read_image(reader.png_, reader.rows_.data()); });
+        return texels;
+    }
+
+private:
+    void guarded(void (*step)(PngReader&)) {
+        if (!completes(step)) throw std::runtime_error(fmt::format("broken PNG: {}", message_.data()));
+    }
+
+    bool completes(void (*step)(PngReader&)) {
+        if (setjmp(png_jmpbuf(png_))) return false;
+        step(*this);
+        return true;
+    }
+
+    [[noreturn]] static void on_error(png_structp png, png_const_charp message) {
+        auto& reader = *static_cast<PngReader*>(png_get_error_ptr(png));
+        std::strncpy(reader.message_.data(), message, reader.message_.size() - 1);
+        png_longjmp(png, 1);
+    }
+
+    static void on_warning(png_structp, png_const_charp) {}  // of chunks that mean nothing here
+
+    static void on_read(png_structp png, png_bytep out, std::size_t size) {
+        auto& reader = *static_cast<PngReader*>(png_get_io_ptr(png));
+        if (size > reader.rest_.size()) png_error(png, "the data ends early");
+        std::memcpy(out, reader.rest_.data(), size);
+        reader.rest_ = reader.rest_.subspan(size);
+    }
+
+    Bytes rest_;
+    png_structp png_ = nullptr;
+    png_infop info_ = nullptr;
+    std::vector<png_bytep> rows_;
+    std::array<char, 200> message_{};
+};
+
+class JpegReader {
+public:
+    explicit JpegReader(Bytes bytes) : bytes_(bytes), decoder_(tjInitDecompress(), tjDestroy) {
+        if (!decoder_) throw std::bad_alloc();
+        int subsampling, color_space;
+        check(tjDecompressHeader3(decoder_.get(), bytes_.data(), bytes_.size(), &width_, &height_, &subsampling,
+                                  &color_space));
+        if (color_space == TJCS_CMYK || color_space == TJCS_YCCK) {
+            throw std::runtime_error("a JPEG of four inks (CMYK) has no colours that glTF defines");
+        }
+    }
+
+    Extent size() const { return {std::uint32_t(width_), std::uint32_t(height_)}; }
+
+    std::vector<std::uint8_t> rgba() {
+        std::vector<std::uint8_t> texels(4 * size().pixels());
+        // A small file may hold endless passes over the picture: the flag ends them at 500.
+        check(tjDecompress2(decoder_.get(), bytes_.data(), bytes_.size(), texels.data(), width_, 4 * width_, height_,
+                            TJPF_RGBA, TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS));
+        return texels;
+    }
+
+private:
+    /// Warnings count as well: they are about data that is missing or damaged.
+    void check(int result) {
+        if (result != 0) throw std::runtime_error(fmt::format("broken JPEG: {}", tjGetErrorStr2(decoder_.get())));
+    }
+
+    Bytes bytes_;
+    std::unique_ptr<void, int (*)(tjhandle)> decoder_;
+    int width_ = 0, height_ = 0;
+};
+
+}  // namespace
+
+Extent picture_size(Bytes bytes) {
+    if (is_png(bytes)) return PngReader(bytes).size();
+    if (is_jpeg(bytes)) return JpegReader(bytes).size();
+    refuse_format(bytes);
+}
+
+std::vector<std::uint8_t> decode_picture(Bytes bytes) {
+    if (is_png(bytes)) return PngReader(bytes).rgba();
+    if (is_jpeg(bytes)) return JpegReader(bytes).rgba();
+    refuse_format(bytes);
+}
+
+}  // namespace vkcppm

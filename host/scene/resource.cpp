@@ -1,0 +1,56 @@
+#include "scene/resource.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include "core/fnv1a.h"
+#include "scene/bad_scene.h"
+#include "scene/gltf_schema.h"
+#include "scene/uri.h"
+
+namespace vkcppm {
+
+std::optional<Bytes> read_bytes(const std::filesystem::path& path, std::size_t limit, std::string& why) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status)) {
+        why = "no such file";
+        return std::nullopt;
+    }
+    if (!std::filesystem::is_regular_file(status)) {
+        why = "not a regular file";
+        return std::nullopt;
+    }
+    std::ifstream stream(path, std::ios::binary | std::ios::ate);
+    Bytes bytes(stream ? std::min(std::size_t(stream.tellg()), limit) : 0);
+    stream.seekg(0);
+    if (!stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()))) {
+        why = "cannot be read";
+        return std::nullopt;
+    }
+    return bytes;
+}
+
+std::optional<Bytes> read_uri(const std::string& uri, std::size_t limit, const std::string& object,
+                              const std::string& file, std::uint64_t& hash, std::string& why) {
+    if (is_data_uri(uri)) {
+        std::optional<Bytes> bytes = decode_data_uri(uri);
+        if (!bytes) {
+            bad_scene(file, object, json_text(uri.substr(0, 50)), "its data must be valid base64 or percent-encoded");
+        }
+        return bytes;
+    }
+    const std::optional<std::filesystem::path> path = resolve_uri(std::filesystem::path(file).parent_path(), uri);
+    if (!path) bad_scene(file, object, json_text(uri), "it must be a relative path inside the scene's folder");
+    std::optional<Bytes> bytes = read_bytes(*path, limit, why);
+    if (bytes) {
+        hash = fnv1a(*bytes, hash);
+    } else {
+        why = fmt::format("{}: {}", json_text(uri), why);
+    }
+    return bytes;
+}
+
+}  // namespace vkcppm
