@@ -27,6 +27,7 @@ struct FlatScene {
     std::vector<gpu::TextureLookup> textures;
     std::vector<std::uint32_t> texels;             // of all images, a word each
     std::vector<gpu::Light> lights;                // alias table; empty where nothing emits
+    std::uint32_t punctual_lights = 0;             // the first so many of them
     Extent environment_size;
     std::vector<glm::vec4> environment;            // [pixels] radiance, keep of its alias table
     std::vector<std::uint32_t> environment_alias;  // [pixels]

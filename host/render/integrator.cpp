@@ -77,6 +77,7 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     params_.photon_capacity = photons_per_lane * first_photon_capacity;
     params_.max_depth = settings.max_depth;
     params_.light_count = std::uint32_t(scene.lights.size());
+    params_.punctual_lights = scene.punctual_lights;
     params_.environment = {scene.environment_size.width, scene.environment_size.height};
     params_.lens_radius = float(0.5 * settings.aperture * scale_);
     params_.focus_distance = float(settings.focus_distance.value_or(1.0) * scale_);

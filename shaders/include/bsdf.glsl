@@ -8,6 +8,8 @@
 // Width alpha = roughness^2. A lobe of width 0 is a delta: paths follow it and nothing is gathered on it.
 // What lies below a coat is weakened by 1 - F(wo . h) with the half vector of the pair of directions, so that light
 // paths and eye paths see the same surface.
+#define PUNCTUAL_ON_ROUGH ((FEATURES & FEATURE_ROUGH) != 0u && (FEATURES & FEATURE_PUNCTUAL_LIGHTS) != 0u)
+
 struct Bsdf {
     vec3 diffuse;           // albedo
     float alpha;            // of reflection and transmission
@@ -281,15 +283,26 @@ float gathered_share(float alpha) {
 
 // A rough lobe is sampled in two ways: eye paths follow it, with its own density, and gather photons on it: k of them,
 // which come from anywhere, as cos / pi stands for. Both are weighed by the balance heuristic (Veach and Guibas 1995),
-// so that narrow lobes are left to eye paths and wide ones to photons, smoothly. This is the weight of following.
+// so that narrow lobes are left to eye paths and wide ones to photons, smoothly. This is the weight of following; and of
+// sampling a punctual light, which no path meets by following.
 float followed_weight(float density, float cosine) {
     return density == DELTA ? 1.0 : density / (density + float(params.knn) * abs(cosine) / PI);
 }
 
-// Light that arrives from wi and is scattered to wo, per flux: all lobes of width above 0, without the cosine, each
-// with its weight of gathering. followed: false where eye paths cannot find this light by following the lobe, then
-// photons bring all of it.
-vec3 gathered_bsdf(Bsdf b, Surface surface, vec3 wo, vec3 wi, bool followed) {
+// Which part of the lobes a sum is of.
+#define PART_ALL 0u       // photons bring all of this light
+#define PART_GATHERED 1u  // photons' share of light that eye paths find too
+#define PART_FOLLOWED 2u  // that of eye paths: rough lobes alone
+
+float weight_of(uint part, float density, float cosine) {
+    if (part == PART_ALL) return 1.0;
+    float followed = followed_weight(density, cosine);
+    return part == PART_FOLLOWED ? followed : 1.0 - followed;
+}
+
+// Light that arrives from wi and is scattered to wo, without the cosine: all lobes of width above 0, each with the weight
+// of its part.
+vec3 rough_bsdf(Bsdf b, Surface surface, vec3 wo, vec3 wi, uint part) {
     vec3 n = surface.normal;
     float wo_n = dot(wo, n);
     float wi_n = dot(wi, n);
@@ -299,11 +312,11 @@ vec3 gathered_bsdf(Bsdf b, Surface surface, vec3 wo, vec3 wi, bool followed) {
         vec3 h = normalize(wo + wi);
         float wo_h = min(1.0, dot(wo, h));
         float below = below_clearcoat(b, wo_h);
-        sum = b.diffuse * (below_coat(b, wo_h) * below / PI);
+        if (part != PART_FOLLOWED) sum = b.diffuse * (below_coat(b, wo_h) * below / PI);
         if ((FEATURES & FEATURE_ROUGH) != 0u && b.alpha > 0.0) {
             float lambda = smith_lambda(b.alpha, wo_n);
             float f = ggx(b.alpha, n, h) / (4.0 * wo_n * wi_n * (1.0 + lambda + smith_lambda(b.alpha, wi_n)));
-            float weight = followed ? 1.0 - followed_weight(reflection_pdf(b.alpha, n, wo, h), wi_n) : 1.0;
+            float weight = weight_of(part, reflection_pdf(b.alpha, n, wo, h), wi_n);
             sum += facet_reflectance(b, wo_h) * (below * f * weight);
         }
     }
@@ -316,7 +329,7 @@ vec3 gathered_bsdf(Bsdf b, Surface surface, vec3 wo, vec3 wi, bool followed) {
             float lambda = smith_lambda(b.clearcoat_alpha, wo_c);
             float f = ggx(b.clearcoat_alpha, c, h) /
                       (4.0 * wo_c * wi_c * (1.0 + lambda + smith_lambda(b.clearcoat_alpha, wi_c)));
-            float weight = followed ? 1.0 - followed_weight(reflection_pdf(b.clearcoat_alpha, c, wo, h), wi_c) : 1.0;
+            float weight = weight_of(part, reflection_pdf(b.clearcoat_alpha, c, wo, h), wi_c);
             // The flux of a photon counts by the base's normal; the coat has one of its own.
             sum += vec3(clearcoat_fresnel(b, min(1.0, dot(wo, h))) * f * weight * (wi_n > 0.0 ? wi_c / wi_n : 0.0));
         }
@@ -329,7 +342,7 @@ vec3 gathered_bsdf(Bsdf b, Surface surface, vec3 wo, vec3 wi, bool followed) {
             vec3 h = normalize(wo + mirrored);
             float lambda = smith_lambda(b.alpha, wo_n);
             float f = ggx(b.alpha, n, h) / (4.0 * wo_n * -wi_n * (1.0 + lambda + smith_lambda(b.alpha, wi_n)));
-            float weight = followed ? 1.0 - followed_weight(reflection_pdf(b.alpha, n, wo, h), wi_n) : 1.0;
+            float weight = weight_of(part, reflection_pdf(b.alpha, n, wo, h), wi_n);
             sum += tint * (facet_transmittance(b, min(1.0, dot(wo, h))) * f * weight);
         } else {
             vec3 h = normalize(b.eta * wo + wi);
@@ -339,7 +352,7 @@ vec3 gathered_bsdf(Bsdf b, Surface surface, vec3 wo, vec3 wi, bool followed) {
             if (wo_h > 0.0 && wi_h < 0.0) {
                 float density = refraction_pdf(b.alpha, n, wo_n, h, b.eta, wo_h, -wi_h);
                 float f = density * smith_g1(b.alpha, wi_n) * b.eta * b.eta / -wi_n;
-                float weight = followed ? 1.0 - followed_weight(density, wi_n) : 1.0;
+                float weight = weight_of(part, density, wi_n);
                 sum += tint * (facet_transmittance(b, min(1.0, wo_h)) * f * weight);
             }
         }

@@ -1,7 +1,7 @@
 // Light sources. Reads lights, and textures of those that have them.
 layout(binding = BIND_LIGHTS) uniform usamplerBuffer lights;
 
-#define LIGHT_TEXELS 6
+#define LIGHT_TEXELS 7
 
 Light light_at(uint index) {
     int texel = int(index) * LIGHT_TEXELS;
@@ -28,6 +28,27 @@ Light light_at(uint index) {
         light.textured = b.w;
     }
     return light;
+}
+
+// A punctual light as seen from `position`: the direction towards it, how far it is, and its irradiance on a surface that
+// faces it. u in [0, 1) chooses the light.
+vec3 sample_punctual(float u, vec3 position, out vec3 direction, out float distance) {
+    uint index = min(uint(u * float(params.punctual_lights)), params.punctual_lights - 1u);
+    Light light = light_at(index);
+    vec3 intensity = uintBitsToFloat(texelFetch(lights, int(index) * LIGHT_TEXELS + 6).xyz) * float(params.punctual_lights);
+    if (light.kind == LIGHT_DIRECTIONAL) {
+        direction = -light.e1;
+        distance = 3.0e38;
+        return intensity;
+    }
+    vec3 towards = light.position - position;
+    distance = length(towards);
+    direction = towards / distance;
+    if (light.kind == LIGHT_SPOT) {
+        float fall = clamp((-dot(direction, light.e1) - light.e2.y) / (light.e2.x - light.e2.y), 0.0, 1.0);
+        intensity *= fall * fall;
+    }
+    return intensity / (distance * distance);
 }
 
 // The share of a textured light's factor that is emitted at a point of it: its texture, where the surface is there.

@@ -67,8 +67,8 @@ vec4 tangent_at(Hit hit, vec3 front_normal, bool second_uv) {
     if (area == 0.0) return vec4(0.0);
     float turn = sign(area);
     vec3 t = turn * (e1 * dv.y - e2 * dv.x);
-    // glTF's v runs down the image, and its bitangent up: cross(n, t) where the mapping does not mirror.
-    return vec4(t, turn);
+    // The bitangent runs up the image, against v.
+    return vec4(t, -turn);
 }
 
 // The normal `front_normal` bent by a normal texture; both on the front of the triangle.

@@ -1,8 +1,8 @@
 #version 460
 // One invocation a pixel: a ray through a random point of the pixel (and of the lens), on to a surface on which photons
 // are gathered. The rule, for every surface alike: paths follow lobes of width 0 (mirrors, smooth glass, smooth coats)
-// and gather on diffuse lobes; between following and gathering a rough lobe the path chooses at random, and each way
-// weighs what it finds (followed_weight of include/bsdf.glsl). Reads the scene; writes hit_position, hit_weight,
+// and gather on diffuse lobes; between following a rough lobe, gathering on it and sampling a punctual light the path
+// chooses at random, and each way weighs what it finds (followed_weight of include/bsdf.glsl). Reads the scene; writes hit_position, hit_weight,
 // hit_emission, hit_surface in glossy scenes (and gathered[].flux as the direction of an unfinished path).
 // O(bounces x log triangles). Fails by running out of steps: the path then goes on next round.
 #include "include/kernel.glsl"
@@ -16,6 +16,7 @@
 #include "include/bsdf.glsl"
 #include "include/path.glsl"
 #include "include/environment.glsl"
+#include "include/light.glsl"
 #include "include/bounds.glsl"
 #include "include/hits.glsl"
 
@@ -70,7 +71,9 @@ void main() {
     HitPosition position = HitPosition(vec3(0.0), HIT_NONE);
     HitWeight weight = HitWeight(vec3(0.0), 0u);
     int steps = int(params.step_budget);
-    for (; (memory & PATH_BOUNCES) < params.max_depth; ++memory) {
+    while (true) {
+        bool shadow = PUNCTUAL_ON_ROUGH && (memory & PATH_SHADOW) != 0u;
+        if ((memory & PATH_BOUNCES) >= (shadow ? PATH_BOUNCES : params.max_depth)) break;
         --steps;
         uint depth = memory & PATH_BOUNCES;
         bool fresh = steps + 1 == int(params.step_budget);
@@ -85,11 +88,16 @@ void main() {
             break;
         }
         ++rays;
+        ++memory;
+        if (shadow && (found == TRACE_MISS || hit.t >= distance)) {
+            emission += throughput;
+            break;
+        }
         if (found == TRACE_MISS) {
             if ((FEATURES & FEATURE_ENVIRONMENT) != 0u) emission += throughput * environment_radiance(direction);
             break;
         }
-        distance += hit.t;
+        distance += shadow ? -hit.t : hit.t;
         Surface surface = surface_at(hit, direction);
         SurfaceMaterial material = material_at(hit, direction, surface);
         if ((FEATURES & FEATURE_VOLUME) != 0u) throughput *= transmittance(memory, surface, hit.t);
@@ -101,6 +109,7 @@ void main() {
             origin = leave(surface, direction);
             continue;
         }
+        if (shadow) break;
         if ((FEATURES & FEATURE_AOVS) != 0u && depth == 0u) {
             Aovs sum = aovs[pixel];
             aovs[pixel] = Aovs(sum.albedo + material.color, sum.normal + surface.normal,
@@ -117,8 +126,11 @@ void main() {
 
         // Gathering takes part in the choice of a lobe, in place of the diffuse one.
         vec4 lobes = lobes_of(bsdf, surface, -direction);
+        vec3 rough = vec3(0.0);
         if ((FEATURES & FEATURE_ROUGH) != 0u) {
-            vec3 shares = vec3(gathered_share(bsdf.alpha) * lobes.yz, gathered_share(bsdf.clearcoat_alpha) * lobes.w);
+            rough = vec3(bsdf.alpha > 0.0 ? lobes.yz : vec2(0.0), bsdf.clearcoat_alpha > 0.0 ? lobes.w : 0.0);
+            vec3 shares = rough * vec3(vec2(gathered_share(bsdf.alpha)), gathered_share(bsdf.clearcoat_alpha));
+            rough -= shares;
             lobes.x += shares.x + shares.y + shares.z;
             lobes.yzw -= shares;
         }
@@ -126,6 +138,22 @@ void main() {
         float inverse_probability;
         uint lobe = choose_lobe(lobes, choice, inverse_probability);
         if (lobe == LOBE_NONE) break;
+        if (PUNCTUAL_ON_ROUGH && lobe != LOBE_DIFFUSE && rough[lobe - 1u] > 0.0) {
+            // One half of what would follow rough lobes asks for a light instead.
+            if (u.w < 0.5) {
+                vec3 towards;
+                throughput *= sample_punctual(2.0 * u.w, surface.position, towards, distance);
+                throughput *= rough_bsdf(bsdf, surface, -direction, towards, PART_FOLLOWED);
+                throughput *= abs(dot(towards, surface.normal)) * (lobes.x + lobes.y + lobes.z + lobes.w) /
+                              (0.5 * (rough.x + rough.y + rough.z));
+                if (all(lessThanEqual(throughput, vec3(0.0)))) break;
+                direction = towards;
+                origin = leave(surface, direction);
+                memory |= PATH_SHADOW;
+                continue;
+            }
+            inverse_probability *= 2.0;
+        }
         throughput *= inverse_probability;
         if (lobe == LOBE_DIFFUSE) {
             position.position = surface.position;

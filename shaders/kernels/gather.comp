@@ -87,8 +87,8 @@ void main() {
                 power *= max(0.0, both_sides ? abs(cos_shading) : cos_shading) / max(0.01, dot(towards, geometric));
             }
             if ((FEATURES & FEATURE_GLOSS) != 0u) {
-                bool straight = (flux.x & 0x80000000u) != 0u;
-                power *= PI * gathered_bsdf(bsdf, surface, outgoing, towards, !straight);
+                uint part = (flux.x & 0x80000000u) != 0u ? PART_ALL : PART_GATHERED;
+                power *= PI * rough_bsdf(bsdf, surface, outgoing, towards, part);
             }
             bool inside = squared < radius2;
             float q = squared * inverse_radius * inverse_radius;

@@ -61,7 +61,7 @@ void main() {
             bool punctual = emit(random_words(params.seed, launch.iteration, STREAM_PHOTON, path, 0u),
                                  random4(params.seed, launch.iteration, STREAM_PHOTON, path, 1u),
                                  state.origin, state.direction, state.power);
-            state.memory = PATH_OUTSIDE | (punctual ? PATH_STRAIGHT : 0u);
+            state.memory = PATH_OUTSIDE | (punctual ? PATH_STRAIGHT | PATH_DIRECT : 0u);
             state.origin = enter_bounds(state.origin, state.direction);
             state.power0 = largest(state.power);
         }
@@ -97,7 +97,7 @@ void main() {
                     if (state.stored < params.photon_capacity) {
                         photons[slot + state.stored] = Photon(surface.position, pack_direction(surface.geometric));
                         vec3 power = state.power;
-                        if ((FEATURES & FEATURE_ROUGH) != 0u && (state.memory & PATH_STRAIGHT) != 0u) {
+                        if (PUNCTUAL_ON_ROUGH && (state.memory & (PATH_STRAIGHT | PATH_DIRECT)) == PATH_STRAIGHT) {
                             power.r = uintBitsToFloat(floatBitsToUint(power.r) | 0x80000000u);
                         }
                         photon_flux[slot + state.stored] = PhotonFlux(power, pack_direction(-state.direction));
@@ -112,6 +112,7 @@ void main() {
                     vec3 before = state.direction;
                     float density;
                     state.power *= sample_lobe(lobe, bsdf, surface, u.xy, false, state.direction, density) * inverse_probability;
+                    state.memory &= ~PATH_DIRECT;
                     if (density != DELTA) {
                         state.memory &= ~PATH_STRAIGHT;
                         if ((FEATURES & FEATURE_SMOOTH) != 0u) {

@@ -170,8 +170,9 @@ struct TextureLookup {
     uint unused[2];
 };
 
-// One entry of the alias table of lights; 96 bytes, read as 6 uvec4 texels, the last two for textured lights only. A
-// path that starts here carries `power`: flux of the light / its probability.
+// One entry of the alias table of lights, punctual lights first; 112 bytes, read as 7 uvec4 texels: two for textured
+// lights only, the last where eye paths sample punctual lights. A path that starts here carries `power`: flux of the
+// light / its probability.
 struct Light {
     vec3 position;     // triangle: v0; point, spot: position; directional, environment: centre of the scene's disc
     uint kind;         // LIGHT_*
@@ -184,6 +185,8 @@ struct Light {
     vec2 corner[3];    // textured: barycentrics of its corners in the triangle that it is a part of
     uint triangle;     // textured: that triangle, into the leaf-ordered ones
     uint textured;     // its radiance or alpha comes from textures
+    vec3 intensity;    // point, spot: W sr^-1 (frame-scaled); directional: W m^-2
+    uint unused;
 };
 
 // A stored photon: what the distance test reads (16 bytes) and what an accepted photon adds (16 bytes).
@@ -193,7 +196,8 @@ struct Photon {
 };
 struct PhotonFlux {
     vec3 power;        // W (frame-scaled), not yet divided by the number of emitted paths; red with its sign bit set: the
-                       // photon comes straight from a punctual light, by way of nothing but mirrors and smooth glass
+                       // photon comes straight from a punctual light by way of mirrors and smooth glass alone, and
+                       // at least one: no eye path finds its light
     uint direction;    // unit, towards where it came from, octahedral snorm16x2
 };
 
@@ -225,8 +229,10 @@ struct HitSurface {
 #define PATH_BOUNCES 0xfffu
 #define PATH_STRAIGHT 0x1000u   // it has met nothing but delta lobes since it left the eye or a punctual light
 #define PATH_DISPERSED 0x2000u  // its wavelength is drawn
-#define PATH_MEDIUM_SHIFT 14u
-#define PATH_NO_MEDIUM 0x3ffffu // also the largest number of materials
+#define PATH_DIRECT 0x4000u     // a photon that has met nothing yet since it left a punctual light
+#define PATH_SHADOW 0x4000u     // an eye path whose last ray asks whether a punctual light is seen
+#define PATH_MEDIUM_SHIFT 15u
+#define PATH_NO_MEDIUM 0x1ffffu // also the largest number of materials
 
 // Sum of one pass of the gather over a pixel's disc.
 struct Gathered {
@@ -328,6 +334,7 @@ struct Params {
     uint photon_capacity;  // slots a lane
     uint max_depth;
     uint light_count;
+    uint punctual_lights;  // the first so many of them
     uvec2 environment;     // its columns and rows
     float lens_radius;     // frame units; at focus_distance along the axis a point is sharp
     float focus_distance;
@@ -362,7 +369,7 @@ struct Launch {
 static_assert(sizeof(BvhNode) == 64);
 static_assert(sizeof(TriangleGeometry) == 48);
 static_assert(sizeof(TriangleShading) == 16);
-static_assert(sizeof(SurfaceMaterial) == 144 && sizeof(TextureLookup) == 48 && sizeof(Light) == 96);
+static_assert(sizeof(SurfaceMaterial) == 144 && sizeof(TextureLookup) == 48 && sizeof(Light) == 112);
 static_assert(sizeof(Photon) == 16 && sizeof(PhotonFlux) == 16);
 static_assert(sizeof(HitPosition) == 16 && sizeof(HitWeight) == 16 && sizeof(HitEmission) == 16 &&
               sizeof(HitSurface) == 16);
