@@ -1,7 +1,10 @@
 #include "reference/bvh.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 #include <glm/common.hpp>
 
@@ -15,22 +18,24 @@ glm::dvec3 centroid(const Scene& scene, std::uint32_t triangle) {
     return (scene.positions[v[0]] + scene.positions[v[1]] + scene.positions[v[2]]) / 3.0;
 }
 
-/// Slab test; a box that the ray touches counts.
-bool meets(const glm::dvec3& low, const glm::dvec3& high, const Ray& ray, double t_max) {
-    double near = ray.t_min, far = t_max;
+/// Slab test: where the ray enters the box, infinite where it misses it; a box that the ray touches counts.
+/// `inverse`: 1 / direction.
+double enter(const glm::dvec3& low, const glm::dvec3& high, const Ray& ray, const glm::dvec3& inverse) {
+    double near = ray.t_min, far = ray.t_max;
     for (int axis = 0; axis < 3; ++axis) {
         if (ray.direction[axis] == 0.0) {
             if (ray.origin[axis] < low[axis] || ray.origin[axis] > high[axis]) {
-                return false;
+                return std::numeric_limits<double>::infinity();
             }
             continue;
         }
-        const double t0 = (low[axis] - ray.origin[axis]) / ray.direction[axis];
-        const double t1 = (high[axis] - ray.origin[axis]) / ray.direction[axis];
-        near = std::max(near, std::min(t0, t1));
-        far = std::min(far, std::max(t0, t1));
+        const double t0 = (low[axis] - ray.origin[axis]) * inverse[axis];
+        const double t1 = (high[axis] - ray.origin[axis]) * inverse[axis];
+        const double first = t0 < t1 ? t0 : t1, last = t0 < t1 ? t1 : t0;
+        near = first > near ? first : near;
+        far = last < far ? last : far;
     }
-    return near <= far;
+    return near <= far ? near : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
@@ -77,33 +82,56 @@ std::uint32_t Bvh::build(std::uint32_t first, std::uint32_t count) {
     return index;
 }
 
-std::optional<Hit> Bvh::nearest(const Ray& ray) const {
+std::optional<Hit> Bvh::walk(Ray ray, bool any) const {
     std::optional<Hit> nearest;
-    Ray shrinking = ray;
-    std::vector<std::uint32_t> stack;
-    if (!nodes_.empty()) {
-        stack.push_back(0);
+    if (nodes_.empty()) {
+        return nearest;
     }
-    while (!stack.empty()) {
-        const std::uint32_t index = stack.back();
-        const Node& node = nodes_[index];
-        stack.pop_back();
-        if (!meets(node.low, node.high, ray, shrinking.t_max)) {
+    const glm::dvec3 inverse = 1.0 / ray.direction;
+    struct Entry {
+        std::uint32_t node;
+        double t;
+    };
+    std::array<Entry, 64> stack;  // halves of halves: 32 levels hold every index
+    std::size_t height = 0;
+    stack[height++] = {0, enter(nodes_[0].low, nodes_[0].high, ray, inverse)};
+    while (height > 0) {
+        const Entry entry = stack[--height];
+        if (!(entry.t < ray.t_max)) {
             continue;
         }
+        const Node& node = nodes_[entry.node];
         if (node.count == 0) {
-            stack.push_back(node.first);
-            stack.push_back(index + 1);
+            Entry left{entry.node + 1, 0.0}, right{node.first, 0.0};
+            for (Entry* child : {&left, &right}) {
+                child->t = enter(nodes_[child->node].low, nodes_[child->node].high, ray, inverse);
+            }
+            if (left.t < right.t) {
+                std::swap(left, right);
+            }
+            stack[height++] = left;  // the nearer one on top
+            stack[height++] = right;
             continue;
         }
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-            if (const auto hit = intersect(scene_, order_[i], shrinking)) {
+            if (const auto hit = intersect(scene_, order_[i], ray)) {
                 nearest = hit;
-                shrinking.t_max = hit->t;
+                ray.t_max = hit->t;
+                if (any) {
+                    return nearest;
+                }
             }
         }
     }
     return nearest;
+}
+
+std::optional<Hit> Bvh::nearest(const Ray& ray) const {
+    return walk(ray, false);
+}
+
+bool Bvh::occluded(const Ray& ray) const {
+    return walk(ray, true).has_value();
 }
 
 }  // namespace vkcppm::reference

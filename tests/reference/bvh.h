@@ -20,7 +20,7 @@ public:
     std::optional<Hit> nearest(const Ray& ray) const;
 
     /// Whether anything lies inside (t_min, t_max).
-    bool occluded(const Ray& ray) const { return nearest(ray).has_value(); }
+    bool occluded(const Ray& ray) const;
 
 private:
     struct Node {
@@ -28,6 +28,7 @@ private:
         std::uint32_t first = 0, count = 0;  // leaf: range of order_; inner (count 0): first is the right child
     };
     std::uint32_t build(std::uint32_t first, std::uint32_t count);
+    std::optional<Hit> walk(Ray ray, bool any) const;
 
     const Scene& scene_;
     std::vector<std::uint32_t> order_;

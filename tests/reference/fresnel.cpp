@@ -19,8 +19,13 @@ double fresnel_dielectric(double cosine, double ior_ratio) {
     return (perpendicular * perpendicular + parallel * parallel) / 2.0;
 }
 
+glm::dvec3 fresnel_schlick(const glm::dvec3& f0, double f90, double cosine) {
+    const double x = 1.0 - cosine;
+    return f0 + (f90 - f0) * (x * x * x * x * x);
+}
+
 glm::dvec3 fresnel_metal(const glm::dvec3& base, double cosine) {
-    return base + (1.0 - base) * std::pow(1.0 - cosine, 5);
+    return fresnel_schlick(base, 1.0, cosine);
 }
 
 }  // namespace vkcppm::reference

@@ -10,6 +10,9 @@ namespace vkcppm::reference {
 /// 1 where the reflection is total.
 double fresnel_dielectric(double cosine, double ior_ratio);
 
+/// Schlick's approximation: f0 + (f90 - f0)(1 - cosine)^5, `cosine` in [0, 1].
+glm::dvec3 fresnel_schlick(const glm::dvec3& f0, double f90, double cosine);
+
 /// glTF's metal (Schlick): base + (1 - base)(1 - cosine)^5.
 glm::dvec3 fresnel_metal(const glm::dvec3& base, double cosine);
 

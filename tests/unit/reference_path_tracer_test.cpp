@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 
 #include <glm/geometric.hpp>
@@ -241,21 +240,6 @@ TEST(ReferencePathTracer, SameSeedSameBits) {
     };
     EXPECT_TRUE(trace(1) == trace(1));
     EXPECT_FALSE(trace(1) == trace(2));
-}
-
-TEST(ReferencePathTracer, NamesAMaterialItCannotScatter) {
-    Scene scene;
-    Material coated = lambert(glm::vec3(0.5f));
-    coated.specular = 1.0f;
-    coated.name = "varnish";
-    add_quad(scene, coated, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
-    add_camera(scene, {0, 0, 1}, {0, 0, 0}, degree);
-    try {
-        path_trace(scene, {.size = {1, 1}, .samples = 2});
-        FAIL() << "a coat is not in the reference";
-    } catch (const std::invalid_argument& error) {
-        EXPECT_NE(std::string(error.what()).find("varnish"), std::string::npos) << error.what();
-    }
 }
 
 }  // namespace
