@@ -10,11 +10,13 @@
 
 #include "reference/fresnel.h"
 #include "reference/path_tracer.h"
+#include "support/picture_mean.h"
 
 namespace vkcppm::reference {
 namespace {
 
 using std::numbers::pi;
+using test::expect_mean;
 
 constexpr double degree = pi / 180.0;
 
@@ -74,23 +76,6 @@ void add_camera(Scene& scene, glm::dvec3 position, glm::dvec3 target, double yfo
                        glm::dvec4(position, 1.0)};
     camera.yfov = yfov;
     scene.cameras.push_back(camera);
-}
-
-/// The mean of the picture is within four standard errors of `expected`, and those are below `relative` of it.
-void expect_mean(const PathTracing& result, const glm::dvec3& expected, double relative) {
-    glm::dvec3 mean(0.0), variance(0.0);
-    for (std::size_t i = 0; i < result.mean.rgb.size(); ++i) {
-        mean += glm::dvec3(result.mean.rgb[i]);
-        variance += glm::dvec3(result.standard_error.rgb[i]) * glm::dvec3(result.standard_error.rgb[i]);
-    }
-    const double pixels = double(result.mean.rgb.size());
-    for (int channel = 0; channel < 3; ++channel) {
-        const double error = std::sqrt(variance[channel]) / pixels;
-        // Radiance is stored in single precision.
-        EXPECT_NEAR(mean[channel] / pixels, expected[channel], 4.0 * error + 2e-7 * expected[channel])
-            << "channel " << channel << ", standard error " << error;
-        EXPECT_LE(error, relative * expected[channel]) << "channel " << channel << ": too noisy to say anything";
-    }
 }
 
 Scene furnace(const glm::vec3& rho, const glm::vec3& emission) {
