@@ -127,6 +127,23 @@ bool Bsdf::is_delta(Lobe lobe) const {
     return false;
 }
 
+/// Whether the lobe carries any light.
+bool Bsdf::has(Lobe lobe) const {
+    const double opaque = (1.0 - metallic) * (1.0 - transmission);
+    switch (lobe) {
+        case Lobe::diffuse: return opaque > 0.0 && brightest(base_color) > 0.0;
+        case Lobe::reflection: return metallic > 0.0 || transmits() || (opaque > 0.0 && specular > 0.0);
+        case Lobe::transmission: return transmits() && ior != 0.0;
+        case Lobe::coat: return coat > 0.0;
+    }
+    return false;
+}
+
+bool Bsdf::only_deltas() const {
+    return std::all_of(std::begin(all_lobes), std::end(all_lobes),
+                       [this](Lobe lobe) { return is_delta(lobe) || !has(lobe); });
+}
+
 double Bsdf::fresnel_exact(double cosine) const {
     if (ior == 0.0) {
         return 1.0;
@@ -195,7 +212,7 @@ double Bsdf::half_vector_jacobian(Lobe lobe, const glm::dvec3& wo, const glm::dv
     return eta_i * eta_i * std::abs(ih) / (sum * sum);
 }
 
-/// Where a facet of normal h sends what comes from wo; none where that is total reflection or no way that the lobe goes.
+/// Where a facet of normal h sends what comes from wo; none where it does not face wo or total reflection stops it.
 std::optional<glm::dvec3> Bsdf::scatter(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& h) const {
     if (glm::dot(wo, h) <= 0.0) {
         return std::nullopt;
@@ -210,14 +227,11 @@ glm::dvec3 Bsdf::evaluate(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi)
     const glm::dvec3 black(0.0);
     const bool through = lobe == Lobe::transmission;
     const double co = glm::dot(wo, normal_of(lobe)), ci = glm::dot(wi, normal_of(lobe)) * (through ? -1.0 : 1.0);
-    if (is_delta(lobe) || ci <= 0.0 || (glm::dot(wi, geometric_normal) < 0.0) != through) {
+    if (is_delta(lobe) || !has(lobe) || ci <= 0.0 || (glm::dot(wi, geometric_normal) < 0.0) != through) {
         return black;
     }
     if (lobe == Lobe::diffuse) {
         const double share = (1.0 - metallic) * (1.0 - transmission);
-        if (share == 0.0) {
-            return black;
-        }
         const glm::dvec3 sum = wo + wi;
         const double length = glm::length(sum);
         const double oh = length > 0.0 ? std::min(std::abs(glm::dot(wo, sum)) / length, 1.0) : 0.0;
@@ -227,9 +241,6 @@ glm::dvec3 Bsdf::evaluate(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi)
         return black;
     }
     if (lobe == Lobe::coat) {
-        if (coat == 0.0) {
-            return black;
-        }
         const glm::dvec3 h = half_vector(lobe, wo, wi);
         return glm::dvec3((1.0 - below_coat(absolute_cosine(wo, h))) * ggx(coat_alpha, coat_normal, h) *
                           visibility(coat_alpha, co, ci));
@@ -238,9 +249,6 @@ glm::dvec3 Bsdf::evaluate(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi)
         const glm::dvec3 h = half_vector(lobe, wo, wi);
         const double oh = absolute_cosine(wo, h);
         return reflectance(oh) * (below_coat(oh) * ggx(alpha, normal, h) * visibility(alpha, co, ci));
-    }
-    if (!transmits()) {
-        return black;
     }
     const glm::dvec3 h = half_vector(lobe, wo, wi);
     const double oh = glm::dot(wo, h);
@@ -280,13 +288,13 @@ Bsdf::Deltas Bsdf::delta_lobes(const glm::dvec3& wo) const {
     };
     // A shading normal may face away from a grazing wo: the cosine is then that of grazing.
     const double co = cosine(wo, normal);
-    if (is_delta(Lobe::coat) && coat > 0.0) {
+    if (is_delta(Lobe::coat) && has(Lobe::coat)) {
         add(Lobe::coat, reflected(wo, coat_normal), glm::dvec3(1.0 - below_coat(cosine(wo, coat_normal))));
     }
-    if (is_delta(Lobe::reflection)) {
+    if (is_delta(Lobe::reflection) && has(Lobe::reflection)) {
         add(Lobe::reflection, reflected(wo, normal), reflectance(co) * below_coat(co));
     }
-    if (is_delta(Lobe::transmission) && transmits()) {
+    if (is_delta(Lobe::transmission) && has(Lobe::transmission)) {
         if (const auto direction = thin ? std::optional(-wo) : refract(wo, normal)) {
             add(Lobe::transmission, *direction,
                 (1.0 - metallic) * transmission * base_color * ((1.0 - fresnel_exact(co)) * below_coat(co)));
@@ -302,20 +310,21 @@ Bsdf::Choice Bsdf::choice(const glm::dvec3& wo) const {
         at(delta.lobe) = mean(delta.weight);
     }
     const double co = cosine(wo, normal), below = below_coat(co);
-    const double diffuse = (1.0 - metallic) * (1.0 - transmission);
-    if (diffuse > 0.0 && brightest(base_color) > 0.0) {
-        at(Lobe::diffuse) =
-            least_albedo + diffuse * below * mean(base_color) * (1.0 - brightest(fresnel_coat(co)));
+    const auto rough = [&](Lobe lobe) {
+        return has(lobe) && !is_delta(lobe) && (lobe == Lobe::diffuse || glm::dot(wo, normal_of(lobe)) > 0.0);
+    };
+    if (rough(Lobe::diffuse)) {
+        at(Lobe::diffuse) = least_albedo + below * (1.0 - metallic) * (1.0 - transmission) * mean(base_color) *
+                                               (1.0 - brightest(fresnel_coat(co)));
     }
-    const bool reflects = metallic > 0.0 || transmits() || (diffuse > 0.0 && specular > 0.0);
-    if (!is_delta(Lobe::reflection) && reflects && glm::dot(wo, normal) > 0.0) {
+    if (rough(Lobe::reflection)) {
         at(Lobe::reflection) = least_albedo + below * mean(reflectance(co));
     }
-    if (!is_delta(Lobe::transmission) && transmits() && ior != 0.0 && glm::dot(wo, normal) > 0.0) {
+    if (rough(Lobe::transmission)) {
         at(Lobe::transmission) = least_albedo + below * (1.0 - metallic) * transmission * mean(base_color) *
                                                     (1.0 - fresnel_exact(co));
     }
-    if (!is_delta(Lobe::coat) && coat > 0.0 && glm::dot(wo, coat_normal) > 0.0) {
+    if (rough(Lobe::coat)) {
         at(Lobe::coat) = least_albedo + 1.0 - below_coat(cosine(wo, coat_normal));
     }
     const double total = albedo[0] + albedo[1] + albedo[2] + albedo[3];

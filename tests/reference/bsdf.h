@@ -40,8 +40,8 @@ struct Bsdf {
     bool thin = true;                       // no volume behind: transmitted light passes straight on
     bool front = true;                      // wo is on the outside
 
-    /// The bidirectional scattering function of one lobe, 1/sr, without the cosine and without delta lobes. Transmission
-    /// into a solid is that of radiance over squared index: f(wo, wi) eta_o^2 = f(wi, wo) eta_i^2.
+    /// The bidirectional scattering function of one lobe, 1/sr, without the cosine and without delta lobes. That of
+    /// transmission into a solid is for radiance over squared index: f(wo, wi) eta_o^2 = f(wi, wo) eta_i^2.
     glm::dvec3 evaluate(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi) const;
 
     /// The sum over all lobes.
@@ -77,8 +77,11 @@ struct Bsdf {
 
     /// Share of the light from everywhere, alike in all directions, that goes on to wo: the integral of f |n.wi| over
     /// the sphere and the delta lobes. Midpoint rule with steps^2 points a lobe, over cosine-distributed directions or
-    /// half vectors distributed as D (n.h); no sampling code is shared with sample().
+    /// half vectors distributed as D (n.h), where sample() has visible normals.
     glm::dvec3 directional_albedo(const glm::dvec3& wo, int steps = 256) const;
+
+    /// Whether evaluate() is black for all directions.
+    bool only_deltas() const;
 
     /// Whether light can cross the surface.
     bool transmits() const { return (1.0 - metallic) * transmission > 0.0; }
@@ -86,6 +89,7 @@ struct Bsdf {
 private:
     const glm::dvec3& normal_of(Lobe lobe) const { return lobe == Lobe::coat ? coat_normal : normal; }
     bool is_delta(Lobe lobe) const;
+    bool has(Lobe lobe) const;
     double fresnel_exact(double cosine) const;
     glm::dvec3 fresnel_coat(double cosine) const;
     glm::dvec3 reflectance(double cosine) const;

@@ -192,7 +192,7 @@ struct Tracer {
         Ray ray;
         glm::dvec3 throughput{1.0};
         std::optional<double> pdf{};                  // 1/sr of the last bounce; none after the camera and delta lobes
-        bool only_deltas = true;                      // so far
+        bool seen_directly = true;                    // so far
         std::vector<std::uint32_t> media{};           // materials of the volumes it is in, innermost last
         std::optional<double> wavelength{};           // nm
 
@@ -239,7 +239,7 @@ struct Tracer {
             }
             path.throughput *= transmittance(path.medium(), hit->t);
             if (material.unlit) {
-                return path.only_deltas ? sum + path.throughput * surface.base_color : sum;
+                return path.seen_directly ? sum + path.throughput * surface.base_color : sum;
             }
             double share = 1.0;
             if (path.pdf) {
@@ -264,7 +264,7 @@ struct Tracer {
                 cross(behind, material_index, surface.front);
             }
             const glm::dvec3 wo = -path.ray.direction;
-            if (depth < max_depth) {
+            if (depth < max_depth && !bsdf.only_deltas()) {
                 const auto back_medium = behind.empty() ? std::nullopt : std::optional(behind.back());
                 const Vertex vertex{surface, wo, path.medium(), back_medium, through_color};
                 sum += path.throughput * from_area_lights(vertex, random);
@@ -279,7 +279,7 @@ struct Tracer {
             }
             path.throughput *= next->weight;
             path.pdf = next->pdf > 0.0 ? std::optional(next->pdf) : std::nullopt;
-            path.only_deltas = path.only_deltas && !path.pdf;
+            path.seen_directly = path.seen_directly && !path.pdf;
             if (next->lobe == Lobe::transmission) {
                 path.throughput *= through_color;
                 path.wavelength = drawn ? drawn : path.wavelength;

@@ -30,8 +30,8 @@ struct PathTracing {
 /// The ray of `camera` through film position (x, y) in pixels, (0, 0) the upper left corner of a picture of that size.
 Ray camera_ray(const Camera& camera, const Extent& size, double x, double y);
 
-/// The same through a point of a thin lens, in m from its centre along the camera's x and y: all rays of a film position
-/// meet on the plane at `focus_distance`.
+/// The same through a point of a thin lens, in m from its centre along the camera's x and y: all rays of a film
+/// position meet on the plane at `focus_distance`.
 Ray lens_ray(const Camera& camera, const Extent& size, double x, double y, const glm::dvec2& lens,
              double focus_distance);
 

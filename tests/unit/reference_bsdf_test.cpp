@@ -110,7 +110,7 @@ Bsdf seen_from(const Bsdf& bsdf, const glm::dvec3& wi) {
 
 TEST(ReferenceBsdf, Reciprocal) {
     std::mt19937_64 random(1);
-    for (auto [name, bsdf] : cases()) {
+    for (const auto& [name, bsdf] : cases()) {
         int counted = 0;
         for (int i = 0; i < 4000; ++i) {
             const glm::dvec3 wo = above(random), wi = on_sphere(random);
@@ -118,13 +118,11 @@ TEST(ReferenceBsdf, Reciprocal) {
             const bool refracted = wi.z < 0.0 && !bsdf.thin;
             const double ratio = refracted ? (bsdf.front ? 1.0 / bsdf.ior : bsdf.ior) : 1.0;  // eta_o / eta_i
             for (const Lobe lobe : all_lobes) {
-                // The coat dims transmission by |n.wo|, which knows one side only.
-                if (lobe == Lobe::transmission && bsdf.coat > 0.0) {
-                    bsdf.coat = 0.0;
+                Bsdf forth = bsdf, back = other;
+                if (lobe == Lobe::transmission) {
+                    forth.coat = back.coat = 0.0;  // it dims transmission by |n.wo|, which knows one side only
                 }
-                Bsdf back = other;
-                back.coat = bsdf.coat;
-                const glm::dvec3 there = bsdf.evaluate(lobe, wo, wi), here = back.evaluate(lobe, wi, wo);
+                const glm::dvec3 there = forth.evaluate(lobe, wo, wi), here = back.evaluate(lobe, wi, wo);
                 // Shading normals let a lobe see one of the directions only: those pairs say nothing.
                 const bool one_sided = glm::dot(wo, bsdf.normal) <= 0.0 || glm::dot(wo, bsdf.coat_normal) <= 0.0 ||
                                        glm::dot(wi, bsdf.normal) * wi.z <= 0.0 ||
@@ -216,7 +214,8 @@ TEST(ReferenceBsdf, MeanWeightOfSamplesIsTheAlbedo) {
             const glm::dvec3 variance = glm::max(glm::dvec3(0.0), squares / double(samples) - mean * mean);
             const glm::dvec3 error = glm::sqrt(variance / double(samples));
             for (int c = 0; c < 3; ++c) {
-                EXPECT_NEAR(mean[c], albedo[c], 4.5 * error[c] + 5e-4) << name << ", wo.z " << wo.z << ", channel " << c;
+                EXPECT_NEAR(mean[c], albedo[c], 4.5 * error[c] + 5e-4)
+                    << name << ", wo.z " << wo.z << ", channel " << c;
             }
         }
     }
@@ -231,6 +230,24 @@ TEST(ReferenceBsdf, NeverCreatesEnergyWithoutADiffuseBase) {
         }
         for (const glm::dvec3& wo : slanted) {
             EXPECT_LE(bsdf.directional_albedo(wo).x, 1.0 + 1e-6) << name << ", wo.z " << wo.z;
+        }
+    }
+}
+
+TEST(ReferenceBsdf, MaskingIsSmithsWithCorrelatedHeights) {
+    // f = D / (4 |n.wo| |n.wi| (1 + L(wo) + L(wi))), L = (sqrt(1 + alpha^2 tan^2) - 1) / 2, where F = 1.
+    Bsdf metal;
+    metal.metallic = 1.0;
+    metal.alpha = 0.5;
+    const auto lambda = [](const glm::dvec3& w) {
+        return (std::sqrt(1.0 + 0.25 * (1.0 - w.z * w.z) / (w.z * w.z)) - 1.0) / 2.0;
+    };
+    for (const glm::dvec3& wo : slanted) {
+        for (const glm::dvec3& wi : slanted) {
+            const double cosine = glm::normalize(wo + wi).z;
+            const double d = 0.25 / (pi * std::pow(cosine * cosine * (0.25 - 1.0) + 1.0, 2));
+            const double expected = d / (4.0 * wo.z * wi.z * (1.0 + lambda(wo) + lambda(wi)));
+            expect_near(metal.evaluate(wo, wi), glm::dvec3(expected), 1e-12 * expected, "GGX");
         }
     }
 }

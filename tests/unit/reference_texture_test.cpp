@@ -73,7 +73,8 @@ TEST(ReferenceTexture, DecodesBeforeItInterpolates) {
     const double fifth = std::pow((0.2 + 0.055) / 1.055, 2.4);
     EXPECT_NEAR(red(texture, 0.75, 0.25, Encoding::srgb), fifth, 1e-15);
     EXPECT_NEAR(red(texture, 0.5, 0.25, Encoding::srgb), fifth / 2.0, 1e-15);
-    EXPECT_NEAR(lookup(texture, four_texels(), {0.3, 0.4}, Encoding::srgb).a, 128.0 / 255.0, 1e-15) << "alpha is linear";
+    const double alpha = lookup(texture, four_texels(), {0.3, 0.4}, Encoding::srgb).a;
+    EXPECT_NEAR(alpha, 128.0 / 255.0, 1e-15) << "alpha is linear";
     const TextureImage dark{"dark", {1, 1}, {10, 10, 10, 10}};
     EXPECT_NEAR(lookup(texture, dark, {0.0, 0.0}, Encoding::srgb).r, 10.0 / 255.0 / 12.92, 1e-15) << "the linear part";
 }
