@@ -1,8 +1,14 @@
 #version 460
 // Starts of light paths.
 #include "include/kernel.glsl"
+#include "include/rng.glsl"
 #include "include/sampling.glsl"
 #include "include/frame.glsl"
+#include "include/scene.glsl"
+#include "include/texture.glsl"
+#include "include/traverse.glsl"
+#include "include/surface.glsl"
+#include "include/environment.glsl"
 #include "include/light.glsl"
 #include "probe.h"
 
@@ -13,6 +19,8 @@ void main() {
     uint i = invocation();
     if (i >= launch.count) return;
     EmitOutput start;
-    emit(inputs[i].u, inputs[i].v, start.origin, start.direction, start.power);
+    start.punctual = emit(inputs[i].bits, inputs[i].v, start.origin, start.direction, start.power) ? 1u : 0u;
+    start.radiance = vec3(0.0);
+    if ((FEATURES & FEATURE_ENVIRONMENT) != 0u) start.radiance = environment_radiance(-start.direction);
     outputs[i] = start;
 }

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "kernels/probe.h"
+#include "render/features.h"
 #include "render/flatten.h"
 #include "support/gpu.h"
 #include "support/shapes.h"
@@ -141,16 +142,27 @@ protected:
     std::vector<gpu::EmitOutput> emit(const FlatScene& flat, const std::vector<gpu::EmitInput>& inputs) {
         gpu::Params params{};
         params.light_count = std::uint32_t(flat.lights.size());
-        probe_.input(BIND_PARAMS, std::vector{params}, Buffer::Kind::uniform);
-        probe_.input(BIND_LIGHTS, flat.lights, Buffer::Kind::uint_texels);
-        probe_.input(PROBE_INPUT, inputs);
-        probe_.output<gpu::EmitOutput>(PROBE_OUTPUT, inputs.size());
-        probe_.run(inputs.size(),
-                   {.iteration = 0, .round = 0, .last_round = 0, .offset = 0, .count = std::uint32_t(inputs.size())});
-        return probe_.result<gpu::EmitOutput>(PROBE_OUTPUT, inputs.size());
+        params.environment = {flat.environment_size.width, flat.environment_size.height};
+        Probe probe("emission", emission_words, flat.bvh.stack, bits_of(flat.features));
+        probe.input(BIND_PARAMS, std::vector{params}, Buffer::Kind::uniform);
+        const auto texels = [&](std::uint32_t binding, const auto& data, Buffer::Kind kind = Buffer::Kind::uint_texels) {
+            probe.input(binding, data, kind);
+        };
+        texels(BIND_LIGHTS, flat.lights);
+        texels(BIND_SHADING, flat.shading);
+        texels(BIND_MATERIALS, flat.materials);
+        texels(BIND_TEXCOORDS, flat.texcoords, Buffer::Kind::float_texels);
+        texels(BIND_VERTEX_COLORS, flat.vertex_colors);
+        texels(BIND_TEXTURES, flat.textures);
+        texels(BIND_TEXELS, flat.texels, Buffer::Kind::word_texels);
+        texels(BIND_ENVIRONMENT, flat.environment, Buffer::Kind::float_texels);
+        texels(BIND_ENVIRONMENT_ALIAS, flat.environment_alias, Buffer::Kind::word_texels);
+        probe.input(PROBE_INPUT, inputs);
+        probe.output<gpu::EmitOutput>(PROBE_OUTPUT, inputs.size());
+        probe.run(inputs.size(),
+                  {.iteration = 0, .round = 0, .last_round = 0, .offset = 0, .count = std::uint32_t(inputs.size())});
+        return probe.result<gpu::EmitOutput>(PROBE_OUTPUT, inputs.size());
     }
-
-    Probe probe_{"emission", emission_words};
 };
 
 TEST_F(Emission, LightsEmitTheirShareWhereAndWhereTo) {
@@ -166,7 +178,7 @@ TEST_F(Emission, LightsEmitTheirShareWhereAndWhereTo) {
     const auto next = [&] { return float(random() >> 8) / 16777216.0f; };
     std::vector<gpu::EmitInput> inputs(samples);
     for (auto& input : inputs) {
-        for (int c = 0; c < 4; ++c) input.u[c] = next();
+        for (int c = 0; c < 4; ++c) input.bits[c] = std::uint32_t(random());
         for (int c = 0; c < 4; ++c) input.v[c] = next();
     }
     const auto starts = emit(flat, inputs);
@@ -286,11 +298,12 @@ TEST_F(Emission, CornersOfTheHypercubeGiveFiniteStarts) {
     for (std::size_t light = 0; light < flat.lights.size(); ++light) {
         for (std::uint32_t bits = 0; bits < 128; ++bits) {
             const auto end = [&](int bit) { return (bits >> bit & 1) ? last : 0.0f; };
-            inputs.push_back({{(float(light) + 0.5f) / float(flat.lights.size()), end(0), end(1), end(2)},
-                              {end(3), end(4), end(5), end(6)}});
+            const auto word = [&](int bit) { return (bits >> bit & 1) ? 0xffffffffu : 0u; };
+            const auto middle = std::uint32_t((double(light) + 0.5) / double(flat.lights.size()) * 4294967296.0);
+            inputs.push_back({{middle, word(0), word(1), word(2)}, {end(3), end(4), end(5), end(6)}});
         }
     }
-    inputs.push_back({{last, last, last, last}, {last, last, last, last}});
+    inputs.push_back({glm::uvec4(0xffffffffu), glm::vec4(last)});
     for (const auto& start : emit(flat, inputs)) {
         EXPECT_NEAR(glm::length(glm::dvec3(start.direction)), 1.0, 1e-6);
         EXPECT_LT(glm::length(start.origin), 10.0f);

@@ -17,13 +17,17 @@ void bump(inout uint x) { x += ++ordinal; }
 void bump(inout float x) { x += float(++ordinal); }
 void bump(inout vec2 v) { for (int c = 0; c < 2; ++c) v[c] += float(++ordinal); }
 void bump(inout vec3 v) { for (int c = 0; c < 3; ++c) v[c] += float(++ordinal); }
+void bump(inout vec4 v) { for (int c = 0; c < 4; ++c) v[c] += float(++ordinal); }
+void bump(inout uvec2 v) { for (int c = 0; c < 2; ++c) v[c] += ++ordinal; }
 void bump(inout uvec3 v) { for (int c = 0; c < 3; ++c) v[c] += ++ordinal; }
 void bump(inout uvec4 v) { for (int c = 0; c < 4; ++c) v[c] += ++ordinal; }
 void bump(inout uint a[2]) { for (int i = 0; i < 2; ++i) a[i] += ++ordinal; }
 void bump(inout uint a[3]) { for (int i = 0; i < 3; ++i) a[i] += ++ordinal; }
 void bump(inout uint a[4]) { for (int i = 0; i < 4; ++i) a[i] += ++ordinal; }
+void bump(inout uint a[TEXTURE_COUNT]) { for (int i = 0; i < TEXTURE_COUNT; ++i) a[i] += ++ordinal; }
 void bump(inout uint a[RADIUS_BINS]) { for (int i = 0; i < RADIUS_BINS; ++i) a[i] += ++ordinal; }
 void bump(inout float a[MAX_RINGS]) { for (int i = 0; i < MAX_RINGS; ++i) a[i] += float(++ordinal); }
+void bump(inout vec2 a[3]) { for (int i = 0; i < 3; ++i) bump(a[i]); }
 void bump(inout vec2 a[MAX_SECTORS / 2]) { for (int i = 0; i < MAX_SECTORS / 2; ++i) bump(a[i]); }
 void bump(inout vec2 a[MAX_SECTORS]) { for (int i = 0; i < MAX_SECTORS; ++i) bump(a[i]); }
 
@@ -59,6 +63,8 @@ BLOCK(BIND_FIRST_STORAGE + 16, GridBlock, Grid, grids)
 BLOCK(BIND_FIRST_STORAGE + 17, StatusBlock, Status, statuses)
 BLOCK(BIND_FIRST_STORAGE + 18, ParamsArrayBlock, Params, params_array)
 BLOCK(BIND_FIRST_STORAGE + 19, LaunchArrayBlock, Launch, launches)
+BLOCK(BIND_FIRST_STORAGE + 20, TextureLookupBlock, TextureLookup, texture_lookups)
+BLOCK(BIND_FIRST_STORAGE + 21, HitSurfaceBlock, HitSurface, hit_surfaces)
 
 void main() {
     if (gl_GlobalInvocationID.x != 0u) return;
@@ -82,6 +88,8 @@ void main() {
     ROUND_TRIP(Status, statuses, MEMBERS_STATUS)
     ROUND_TRIP(Params, params_array, MEMBERS_PARAMS)
     ROUND_TRIP(Launch, launches, MEMBERS_LAUNCH)
+    ROUND_TRIP(TextureLookup, texture_lookups, MEMBERS_TEXTURE_LOOKUP)
+    ROUND_TRIP(HitSurface, hit_surfaces, MEMBERS_HIT_SURFACE)
     BUMP(Params, params, params_array[4], MEMBERS_PARAMS)
     BUMP(Launch, launch, launches[4], MEMBERS_LAUNCH)
 }

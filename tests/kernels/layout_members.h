@@ -7,26 +7,32 @@
     X(child) X(unused)
 #define MEMBERS_TRIANGLE_GEOMETRY X(v0) X(error) X(e1) X(slack) X(e2) X(unused)
 #define MEMBERS_TRIANGLE_SHADING X(normal) X(material)
-#define MEMBERS_SURFACE_MATERIAL X(color) X(kind) X(emission) X(ior)
-#define MEMBERS_LIGHT X(position) X(kind) X(e1) X(keep) X(e2) X(alias_entry) X(power) X(double_sided)
+#define MEMBERS_SURFACE_MATERIAL \
+    X(color) X(flags) X(emission) X(ior) X(metallic) X(roughness) X(transmission) X(specular) X(specular_color) \
+    X(opacity) X(absorption) X(cauchy) X(clearcoat) X(clearcoat_roughness) X(alpha_cutoff) X(normal_scale) X(texture) \
+    X(clearcoat_normal_scale) X(unused)
+#define MEMBERS_TEXTURE_LOOKUP X(first) X(width) X(height) X(flags) X(matrix) X(offset) X(unused)
+#define MEMBERS_LIGHT X(position) X(kind) X(e1) X(keep) X(e2) X(alias_entry) X(power) X(double_sided) X(corner) \
+    X(triangle) X(textured)
 #define MEMBERS_PHOTON X(position) X(normal)
 #define MEMBERS_PHOTON_FLUX X(power) X(direction)
 #define MEMBERS_HIT_POSITION X(position) X(state)
 #define MEMBERS_HIT_WEIGHT X(weight) X(normal)
 #define MEMBERS_HIT_EMISSION X(emission) X(footprint)
+#define MEMBERS_HIT_SURFACE X(triangle) X(barycentric) X(outgoing)
 #define MEMBERS_GATHERED X(flux) X(count)
 #define MEMBERS_PIXEL_STATE X(radius2) X(seeded) X(count) X(total) X(batch) X(rejections) \
     X(photons) X(seen) X(statistic)
 #define MEMBERS_AOVS X(albedo) X(normal) X(depth) X(hits)
 #define MEMBERS_FILM X(sum) X(low)
-#define MEMBERS_PATH_STATE X(origin) X(path) X(direction) X(bounce) X(power) X(stored) X(power0)
+#define MEMBERS_PATH_STATE X(origin) X(path) X(direction) X(memory) X(power) X(stored) X(power0)
 #define MEMBERS_CURSOR X(cell) X(photon)
 #define MEMBERS_GRID X(origin) X(inverse_cell) X(dims) X(cell)
 #define MEMBERS_STATUS X(blocked) X(completed) X(capacity) X(stuck) X(invalid) X(rays) \
     X(stored) X(unused) X(radius_histogram)
 #define MEMBERS_PARAMS \
     X(eye) X(width) X(right) X(height) X(up) X(seed) X(forward) X(pixel_radius) X(bounds_low) X(photons) \
-    X(bounds_high) X(photons_per_lane) X(photon_lanes) X(photon_capacity) X(max_depth) X(light_count) X(step_budget) \
-    X(knn) X(radius_cap) X(radius_floor) X(footprint_cap) X(scene_area) X(inverse_paths) X(alpha) X(k) X(beta) \
+    X(bounds_high) X(photons_per_lane) X(photon_lanes) X(photon_capacity) X(max_depth) X(light_count) X(environment) \
+    X(lens_radius) X(focus_distance) X(step_budget) X(knn) X(radius_cap) X(radius_floor) X(footprint_cap) X(scene_area) X(inverse_paths) X(alpha) X(k) X(beta) \
     X(cells) X(sort_lanes) X(scan_blocks) X(threshold) X(sector_edge) X(sector_centre)
 #define MEMBERS_LAUNCH X(iteration) X(round) X(last_round) X(offset) X(count)

@@ -45,12 +45,14 @@ VISITOR(BvhNode, MEMBERS_BVH_NODE)
 VISITOR(TriangleGeometry, MEMBERS_TRIANGLE_GEOMETRY)
 VISITOR(TriangleShading, MEMBERS_TRIANGLE_SHADING)
 VISITOR(SurfaceMaterial, MEMBERS_SURFACE_MATERIAL)
+VISITOR(TextureLookup, MEMBERS_TEXTURE_LOOKUP)
 VISITOR(Light, MEMBERS_LIGHT)
 VISITOR(Photon, MEMBERS_PHOTON)
 VISITOR(PhotonFlux, MEMBERS_PHOTON_FLUX)
 VISITOR(HitPosition, MEMBERS_HIT_POSITION)
 VISITOR(HitWeight, MEMBERS_HIT_WEIGHT)
 VISITOR(HitEmission, MEMBERS_HIT_EMISSION)
+VISITOR(HitSurface, MEMBERS_HIT_SURFACE)
 VISITOR(Gathered, MEMBERS_GATHERED)
 VISITOR(PixelState, MEMBERS_PIXEL_STATE)
 VISITOR(Aovs, MEMBERS_AOVS)
@@ -117,7 +119,8 @@ protected:
     F(0, BvhNode)                                                                                                     \
     F(1, TriangleGeometry) F(2, TriangleShading) F(3, SurfaceMaterial) F(4, Light) F(5, Photon) F(6, PhotonFlux)      \
         F(7, HitPosition) F(8, HitWeight) F(9, HitEmission) F(10, Gathered) F(11, PixelState) F(12, Aovs) F(13, Film) \
-            F(14, PathState) F(15, Cursor) F(16, Grid) F(17, Status) F(18, Params) F(19, Launch)
+            F(14, PathState) F(15, Cursor) F(16, Grid) F(17, Status) F(18, Params) F(19, Launch)                      \
+                F(20, TextureLookup) F(21, HitSurface)
 
 TEST_F(Layout, EveryMemberStandsWhereTheHostPutsIt) {
 #define UPLOAD(index, Struct) upload<gpu::Struct>(BIND_FIRST_STORAGE + index);

@@ -10,6 +10,7 @@ namespace vkcppm::gpu {
 // Storage bindings that no header under test declares.
 #define PROBE_INPUT BIND_PATHS
 #define PROBE_OUTPUT BIND_IMAGE
+#define PROBE_VIEW BIND_GRID
 
 struct RngKey {
     uint seed;
@@ -46,30 +47,79 @@ struct WarpOutput {
 };
 
 struct EmitInput {
-    vec4 u;
+    uvec4 bits;
     vec4 v;
 };
 struct EmitOutput {
     vec3 origin;
     vec3 direction;
     vec3 power;
+    uint punctual;       // the light has no area
+    vec3 radiance;       // of the environment, against the direction
 };
 
 struct ScatterInput {
     vec3 direction;
     vec3 normal;
     vec3 geometric;
-    float u;
+    float u;             // chooses the lobe
     uint front;
     uint material;
     uint radiance;
 };
 struct ScatterOutput {
     vec3 direction;
-    vec3 factor;
+    vec3 factor;         // of the lobe that was followed
+    uint lobe;           // LOBE_*
+    float probability;   // of that lobe
+    float density;
     float reflectance;   // fresnel_dielectric
     float cosine_t;
-    vec3 metal;          // fresnel_metal of the material's color
+    vec3 facet;          // facet_reflectance
+};
+
+struct BsdfView {
+    vec3 outgoing;       // unit, on the side of the normals
+    vec3 geometric;
+    vec3 normal;
+    vec3 clearcoat_normal;
+    uint material;
+    uint front;
+    uint lobe;           // to follow; LOBE_NONE: each by its probability
+    uint radiance;
+};
+struct BsdfInput {
+    vec3 incoming;       // unit, away from the surface
+    vec3 u;
+};
+struct BsdfOutput {
+    uint lobe;           // LOBE_*
+    float probability;   // of that lobe
+    vec3 direction;
+    vec3 weight;         // of sample_lobe
+    float density;
+    float followed;      // followed_weight
+    vec3 value;          // gathered_bsdf of all light
+    vec3 gathered;       // of light that following the lobe finds, too
+};
+
+struct TextureInput {
+    vec4 coordinates;
+    uint texture;        // 1 + index of a TextureLookup
+    uint triangle;
+    vec2 barycentric;
+    vec3 direction;      // towards the surface
+};
+struct TextureOutput {
+    vec4 value;          // of the texture, or base colour and opacity
+    vec3 emission;
+    vec4 metal;          // metallic, roughness, transmission, specular
+    vec3 specular_color;
+    vec2 clearcoat;      // and its roughness
+    float coverage;
+    vec3 geometric;
+    vec3 normal;
+    vec3 clearcoat_normal;
 };
 
 struct RayInput {

@@ -1,11 +1,13 @@
 #version 460
-// Mirrors and dielectrics at every incidence.
+// Lobes of width 0 at every incidence: mirrors and dielectrics.
 #include "include/kernel.glsl"
 #include "include/frame.glsl"
+#include "include/sampling.glsl"
 #include "include/scene.glsl"
+#include "include/texture.glsl"
 #include "include/traverse.glsl"
 #include "include/surface.glsl"
-#include "include/specular.glsl"
+#include "include/bsdf.glsl"
 #include "probe.h"
 
 layout(binding = PROBE_INPUT, scalar) readonly buffer InputBlock { ScatterInput inputs[]; };
@@ -15,14 +17,16 @@ void main() {
     uint i = invocation();
     if (i >= launch.count) return;
     ScatterInput s = inputs[i];
-    SurfaceMaterial material = material_at(s.material);
+    SurfaceMaterial material = factors_of(s.material);
+    Surface surface = Surface(vec3(0.0), s.geometric, s.normal, s.normal, 0.0, s.front != 0u, s.material);
+    Bsdf bsdf = bsdf_of(material, material.ior, surface.front);
     float cosine = min(1.0, -dot(s.direction, s.normal));
     ScatterOutput result;
-    result.reflectance =
-        fresnel_dielectric(cosine, s.front != 0u ? 1.0 / material.ior : material.ior, result.cosine_t);
-    result.metal = fresnel_metal(material.color, cosine);
-    Surface surface = Surface(vec3(0.0), s.geometric, s.normal, 0.0, s.front != 0u, s.material);
+    result.reflectance = fresnel_dielectric(cosine, bsdf.eta, result.cosine_t);
+    result.facet = facet_reflectance(bsdf, cosine);
+    result.lobe = choose_lobe(lobes_of(bsdf, surface, -s.direction), s.u, result.probability);
     result.direction = s.direction;
-    result.factor = scatter_specular(material, surface, s.u, s.radiance != 0u, result.direction);
+    result.factor =
+        sample_lobe(result.lobe, bsdf, surface, vec2(0.0), s.radiance != 0u, result.direction, result.density);
     outputs[i] = result;
 }

@@ -1,4 +1,5 @@
-// Fresnel's equations and the directions behind mirrors and dielectrics, against reference/fresnel in double.
+// Lobes of width 0: Fresnel's equations, the choice between the two lobes of a dielectric and the directions behind
+// mirrors and dielectrics, against reference/fresnel in double.
 
 #include <algorithm>
 #include <cmath>
@@ -27,17 +28,25 @@ const std::vector<float> indices = {1.0f, 1.0001f, 1.33f, 1.5f, 2.4f};  // of th
 const glm::vec3 tint(0.9f, 0.5f, 0.25f);
 const glm::vec3 gold(1.0f, 0.78f, 0.36f);
 
+// LOBE_* of shaders/include/bsdf.glsl.
+constexpr std::uint32_t reflection = 1, transmission = 2;
+
 std::vector<gpu::SurfaceMaterial> materials() {
     std::vector<gpu::SurfaceMaterial> list;
     for (const float ior : indices) {
         gpu::SurfaceMaterial glass{};
-        glass.kind = SURFACE_DIELECTRIC;
+        glass.transmission = 1.0f;
+        glass.specular = 1.0f;
+        glass.specular_color = glm::vec3(1.0f);
         glass.color = tint;
         glass.ior = ior;
         list.push_back(glass);
     }
     gpu::SurfaceMaterial mirror{};
-    mirror.kind = SURFACE_MIRROR;
+    mirror.metallic = 1.0f;
+    mirror.specular = 1.0f;
+    mirror.specular_color = glm::vec3(1.0f);
+    mirror.ior = 1.5f;
     mirror.color = gold;
     list.push_back(mirror);
     return list;
@@ -134,7 +143,7 @@ TEST_F(Specular, ReflectancesAreFresnels) {
             std::clamp(-glm::dot(glm::dvec3(inputs[i].direction), glm::dvec3(inputs[i].normal)), 0.0, 1.0);
         const glm::dvec3 metal = reference::fresnel_metal(gold, cosine);
         if (inputs[i].material == mirror_material) {
-            for (int c = 0; c < 3; ++c) ASSERT_NEAR(outputs[i].metal[c], metal[c], 2e-6) << describe(inputs[i]);
+            for (int c = 0; c < 3; ++c) ASSERT_NEAR(outputs[i].facet[c], metal[c], 2e-6) << describe(inputs[i]);
             continue;
         }
         const Range range = reflectance_range(cosine, ratio(inputs[i]));
@@ -142,6 +151,9 @@ TEST_F(Specular, ReflectancesAreFresnels) {
             << describe(inputs[i]) << ", exact " << range.low << " to " << range.high;
         ASSERT_LE(outputs[i].reflectance, range.high + 1e-6)
             << describe(inputs[i]) << ", exact " << range.low << " to " << range.high;
+        for (int c = 0; c < 3; ++c) {
+            ASSERT_EQ(outputs[i].facet[c], outputs[i].reflectance) << describe(inputs[i]) << ": glass has a coat";
+        }
         if (range.low == 1.0) {
             ++total;
             ASSERT_EQ(outputs[i].cosine_t, 0.0f) << describe(inputs[i]);
@@ -159,32 +171,49 @@ TEST_F(Specular, DirectionsObeySnellAndThroughputsTheSquaredIndex) {
         const glm::dvec3 d(in.direction), n(in.normal), out(outputs[i].direction);
         const double cosine = -glm::dot(d, n), eta = 1.0 / ratio(in);
         ASSERT_NEAR(glm::length(out), 1.0, 1e-6) << describe(in);
+        ASSERT_GT(outputs[i].density, 1e38f) << describe(in) << ": a lobe of width 0 has no finite density";
         bool reflects = true;
+        Range range{1.0, 1.0}, chance{1.0, 1.0};
         if (in.material != mirror_material) {
-            const Range range = reflectance_range(std::clamp(cosine, 0.0, 1.0), ratio(in));
-            if (in.u > range.low - 1e-6 && in.u < range.high + 1e-6) {
+            // Lobes are chosen in proportion to their largest channel.
+            range = reflectance_range(std::clamp(cosine, 0.0, 1.0), ratio(in));
+            const auto share = [](double r) { return r / (r + double(tint.x) * (1.0 - r)); };
+            chance = {share(range.low), share(range.high)};
+            if (in.u > chance.low - 1e-6 && in.u < chance.high + 1e-6) {
                 ++undecided;
                 continue;
             }
-            reflects = in.u < range.low;
+            reflects = in.u < chance.low;
         }
+        ASSERT_EQ(outputs[i].lobe, reflects ? reflection : transmission)
+            << describe(in) << ", reflection's chance " << chance.low;
         if (reflects) {
             ++reflected;
+            ASSERT_GE(outputs[i].probability, chance.low - 1e-6) << describe(in);
+            ASSERT_LE(outputs[i].probability, chance.high + 1e-6) << describe(in);
             ASSERT_LT(glm::distance(out, d + 2.0 * cosine * n), 1e-5) << describe(in);
-            const glm::dvec3 factor =
-                in.material == mirror_material ? reference::fresnel_metal(gold, cosine) : glm::dvec3(1.0);
-            ASSERT_LT(glm::distance(glm::dvec3(outputs[i].factor), factor), 5e-6) << describe(in);
+            if (in.material == mirror_material) {
+                const glm::dvec3 factor = reference::fresnel_metal(gold, cosine);
+                ASSERT_LT(glm::distance(glm::dvec3(outputs[i].factor), factor), 5e-6) << describe(in);
+            } else {
+                ASSERT_EQ(outputs[i].factor, glm::vec3(outputs[i].reflectance)) << describe(in);
+            }
             continue;
         }
         ++refracted;
+        ASSERT_GE(outputs[i].probability, 1.0 - chance.high - 1e-6) << describe(in);
+        ASSERT_LE(outputs[i].probability, 1.0 - chance.low + 1e-6) << describe(in);
         // The component across the normal grows by eta; the rest is what makes it unit. Its error is that of the
         // square root: 1e-5 in the sine, more in the cosine where that is small.
         const glm::dvec3 across = d + cosine * n, out_across = out - glm::dot(out, n) * n;
         ASSERT_LT(glm::distance(out_across, eta * across), 1e-5) << describe(in);
         ASSERT_LT(glm::dot(out, n), 0.0) << describe(in) << ": refracted to its own side";
         const glm::dvec3 factor = glm::dvec3(tint) * (in.radiance ? eta * eta : 1.0);
-        ASSERT_LT(glm::distance(glm::dvec3(outputs[i].factor), factor), 2e-6 * std::max(1.0, eta * eta))
-            << describe(in);
+        for (int c = 0; c < 3; ++c) {
+            const double rounding = 2e-6 * std::max(1.0, eta * eta);
+            ASSERT_GE(outputs[i].factor[c], factor[c] * (1.0 - range.high) - rounding) << describe(in);
+            ASSERT_LE(outputs[i].factor[c], factor[c] * (1.0 - range.low) + rounding) << describe(in);
+        }
     }
     EXPECT_GT(reflected, 5000u);
     EXPECT_GT(refracted, 5000u);
@@ -208,7 +237,7 @@ TEST_F(Specular, BentShadingNormalsNeverSendARayThroughTheSurfaceItLeft) {
         const auto& in = inputs[i];
         const double side = glm::dot(glm::dvec3(outputs[i].direction), glm::dvec3(in.geometric));
         ASSERT_NEAR(glm::length(glm::dvec3(outputs[i].direction)), 1.0, 1e-6) << describe(in);
-        if (in.material == mirror_material || in.u < outputs[i].reflectance) {
+        if (outputs[i].lobe == reflection) {
             ASSERT_GT(side, -1e-6) << describe(in) << ": reflected into the surface";
         } else {
             ASSERT_LT(side, 1e-6) << describe(in) << ": refracted to its own side";

@@ -3,6 +3,7 @@
 #include "include/kernel.glsl"
 #include "include/frame.glsl"
 #include "include/scene.glsl"
+#include "include/texture.glsl"
 #include "include/traverse.glsl"
 #include "include/surface.glsl"
 #include "probe.h"

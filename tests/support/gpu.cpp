@@ -22,10 +22,11 @@ void GpuTest::TearDown() {
     for (std::size_t i = messages_before_; i < messages.size(); ++i) ADD_FAILURE() << messages[i];
 }
 
-Probe::Probe(std::string name, std::span<const std::uint32_t> spirv, std::uint32_t stack)
+Probe::Probe(std::string name, std::span<const std::uint32_t> spirv, std::uint32_t stack, std::uint32_t features)
     : bindings_(device()),
       commands_(device(), bindings_, 16),
-      kernel_(device(), bindings_, std::move(name), spirv, {{SPEC_WORKGROUP, 64}, {SPEC_STACK, stack}}) {
+      kernel_(device(), bindings_, std::move(name), spirv,
+              {{SPEC_WORKGROUP, 64}, {SPEC_STACK, stack}, {SPEC_FEATURES, features}}) {
     create(BIND_PARAMS, sizeof(gpu::Params), Buffer::Kind::uniform);
     create(BIND_STATUS, sizeof(gpu::Status), Buffer::Kind::storage);
 }

@@ -36,7 +36,9 @@ private:
 /// A kernel of tests/kernels with buffers of its own at the bindings it declares.
 class Probe {
 public:
-    Probe(std::string name, std::span<const std::uint32_t> spirv, std::uint32_t stack = 32);
+    /// features: FEATURE_* that it is specialised to.
+    Probe(std::string name, std::span<const std::uint32_t> spirv, std::uint32_t stack = 32,
+          std::uint32_t features = ~0u);
 
     template <typename T>
     void input(std::uint32_t binding, const std::vector<T>& data, Buffer::Kind kind = Buffer::Kind::storage) {

@@ -1,0 +1,40 @@
+#version 460
+// Lobes as they are chosen, followed and gathered on: all from one direction onto one surface.
+// launch.offset: 0: `incoming` is given; else a lobe is chosen by u.z and followed.
+#include "include/kernel.glsl"
+#include "include/frame.glsl"
+#include "include/sampling.glsl"
+#include "include/scene.glsl"
+#include "include/texture.glsl"
+#include "include/traverse.glsl"
+#include "include/surface.glsl"
+#include "include/bsdf.glsl"
+#include "probe.h"
+
+layout(binding = PROBE_VIEW, scalar) readonly buffer ViewBlock { BsdfView view; };
+layout(binding = PROBE_INPUT, scalar) readonly buffer InputBlock { BsdfInput inputs[]; };
+layout(binding = PROBE_OUTPUT, scalar) writeonly buffer OutputBlock { BsdfOutput outputs[]; };
+
+void main() {
+    uint i = invocation();
+    if (i >= launch.count) return;
+    SurfaceMaterial material = factors_of(view.material);
+    Surface surface = Surface(vec3(0.0), view.geometric, view.normal, view.clearcoat_normal, 0.0, view.front != 0u,
+                              view.material);
+    Bsdf bsdf = bsdf_of(material, material.ior, surface.front);
+    BsdfOutput result = BsdfOutput(LOBE_NONE, 1.0, inputs[i].incoming, vec3(0.0), 0.0, 0.0, vec3(0.0), vec3(0.0));
+    if (launch.offset != 0u) {
+        result.lobe = view.lobe;
+        if (view.lobe == LOBE_NONE) {
+            result.lobe = choose_lobe(lobes_of(bsdf, surface, view.outgoing), inputs[i].u.z, result.probability);
+        }
+        result.direction = -view.outgoing;
+        result.weight = sample_lobe(result.lobe, bsdf, surface, inputs[i].u.xy, view.radiance != 0u, result.direction,
+                                    result.density);
+        vec3 n = result.lobe == LOBE_CLEARCOAT ? surface.clearcoat_normal : surface.normal;
+        result.followed = followed_weight(result.density, dot(result.direction, n));
+    }
+    result.value = gathered_bsdf(bsdf, surface, view.outgoing, result.direction, false);
+    result.gathered = gathered_bsdf(bsdf, surface, view.outgoing, result.direction, true);
+    outputs[i] = result;
+}

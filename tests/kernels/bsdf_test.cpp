@@ -1,0 +1,491 @@
+// Every lobe of every kind of material, at several widths and angles: reciprocal, sampled in proportion to its density,
+// of the reference's albedo, and split between following and gathering without rest.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "kernels/probe.h"
+#include "reference/bsdf.h"
+#include "render/surface.h"
+#include "render/textures.h"
+#include "support/gpu.h"
+#include "support/statistics.h"
+
+namespace vkcppm::test {
+namespace {
+
+using std::numbers::pi;
+
+constexpr std::uint32_t bsdf_words[] = {
+#include "bsdf.spv.inc"
+};
+
+// LOBE_* of shaders/include/bsdf.glsl.
+enum LobeIndex : std::uint32_t { diffuse, reflection, transmission, clearcoat, none };
+
+constexpr std::uint32_t features = FEATURE_REFLECTION | FEATURE_TRANSMISSION | FEATURE_GLOSS | FEATURE_ROUGH |
+                                   FEATURE_COAT | FEATURE_CLEARCOAT | FEATURE_THIN;
+constexpr std::uint32_t knn = 10;
+constexpr float delta = 1e38f;  // densities above it are infinite
+
+constexpr std::array roughnesses = {0.05f, 0.2f, 0.5f, 1.0f};
+constexpr std::array angles = {0.0, 25.0, 50.0, 70.0, 85.0};  // degrees
+
+struct Case {
+    std::string name;
+    Material material;
+    bool front = true;
+};
+
+/// Materials whose lobes all have the same roughness, and mixtures.
+std::vector<Case> cases(float roughness) {
+    std::vector<Case> list;
+    const auto add = [&](const char* name, auto&& change) -> Material& {
+        Material m;
+        m.name = name;
+        m.metallic = 0.0f;
+        m.specular = 0.0f;
+        m.roughness = roughness;
+        m.base_color = {0.8f, 0.5f, 0.2f};
+        change(m);
+        list.push_back({name, m});
+        return list.back().material;
+    };
+    const auto from_both_sides = [&](const char* name, auto&& change) {
+        add(name, change);
+        list.push_back({fmt::format("{} from inside", name), list.back().material, false});
+    };
+    add("diffuse", [](Material&) {});
+    add("white metal", [](Material& m) { m.metallic = 1.0f, m.base_color = glm::vec3(1.0f); });
+    add("gold", [](Material& m) { m.metallic = 1.0f, m.base_color = {1.0f, 0.78f, 0.36f}; });
+    add("black metal", [](Material& m) { m.metallic = 1.0f, m.base_color = glm::vec3(0.0f); });
+    add("coat over diffuse", [](Material& m) { m.specular = 1.0f; });
+    add("coat over black", [](Material& m) { m.specular = 1.0f, m.base_color = glm::vec3(0.0f); });
+    add("tinted coat", [](Material& m) { m.specular = 0.6f, m.specular_color = {1.0f, 0.5f, 2.0f}, m.ior = 1.8f; });
+    add("coat of infinite index", [](Material& m) { m.specular = 0.7f, m.ior = 0.0f; });
+    add("half metal", [](Material& m) { m.metallic = 0.5f, m.specular = 1.0f; });
+    const auto glass = [](float ior, float thickness) {
+        return [=](Material& m) { m.transmission = 1.0f, m.thickness = thickness, m.ior = ior, m.specular = 1.0f; };
+    };
+    from_both_sides("glass", glass(1.5f, 1.0f));
+    from_both_sides("diamond", glass(2.4f, 1.0f));
+    from_both_sides("thin glass", glass(1.5f, 0.0f));
+    from_both_sides("glass in part", [](Material& m) {
+        m.transmission = 0.6f, m.thickness = 1.0f, m.metallic = 0.3f, m.specular = 1.0f;
+    });
+    add("clearcoat over black", [=](Material& m) {
+        m.metallic = 1.0f, m.base_color = glm::vec3(0.0f), m.clearcoat = 1.0f, m.clearcoat_roughness = roughness;
+    });
+    add("clearcoat over diffuse", [=](Material& m) { m.clearcoat = 0.8f, m.clearcoat_roughness = roughness; });
+    add("clearcoat over a rougher metal", [=](Material& m) {
+        m.metallic = 1.0f, m.clearcoat = 1.0f, m.clearcoat_roughness = 0.5f * roughness;
+    });
+    add("smooth clearcoat over gold", [](Material& m) { m.metallic = 1.0f, m.clearcoat = 0.9f; });
+    add("everything", [](Material& m) {
+        m.metallic = 0.2f, m.transmission = 0.4f, m.specular = 0.9f, m.clearcoat = 0.5f, m.clearcoat_roughness = 0.3f;
+    });
+    return list;
+}
+
+reference::Bsdf reference_of(const Case& c) {
+    const Material& m = c.material;
+    reference::Bsdf b;
+    b.base_color = glm::dvec3(m.base_color);
+    b.metallic = m.metallic;
+    b.alpha = double(m.roughness) * double(m.roughness);
+    b.transmission = m.transmission;
+    b.ior = b.refraction_ior = m.ior;
+    b.specular = m.specular;
+    b.specular_color = glm::dvec3(m.specular_color);
+    b.coat = m.clearcoat;
+    b.coat_alpha = double(m.clearcoat_roughness) * double(m.clearcoat_roughness);
+    b.thin = m.thickness == 0.0f;
+    b.front = c.front;
+    return b;
+}
+
+/// Index on the side of wo over that of the other side of the surface.
+double index_ratio(const Case& c) {
+    return c.material.thickness == 0.0f ? 1.0 : c.front ? 1.0 / double(c.material.ior) : double(c.material.ior);
+}
+
+glm::vec3 at_angle(double degrees, double azimuth = 0.4) {
+    const double a = degrees * pi / 180.0;
+    return glm::vec3(glm::normalize(
+        glm::dvec3(std::sin(a) * std::cos(azimuth), std::sin(a) * std::sin(azimuth), std::cos(a))));
+}
+
+gpu::BsdfView view_of(const Case& c, const glm::vec3& outgoing, std::uint32_t lobe) {
+    gpu::BsdfView view{};
+    view.outgoing = outgoing;
+    view.geometric = view.normal = view.clearcoat_normal = glm::vec3(0.0f, 0.0f, 1.0f);
+    view.front = c.front ? 1 : 0;
+    view.lobe = lobe;
+    return view;
+}
+
+std::vector<gpu::BsdfInput> random_numbers(std::size_t count, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    const auto next = [&] { return float(random() >> 8) / 16777216.0f; };
+    std::vector<gpu::BsdfInput> inputs(count);
+    for (auto& input : inputs) {
+        for (int c = 0; c < 3; ++c) input.u[c] = next();
+    }
+    return inputs;
+}
+
+class BsdfLobes : public GpuTest {
+protected:
+    void SetUp() override {
+        GpuTest::SetUp();
+        gpu::Params params{};
+        params.knn = knn;
+        probe_.input(BIND_PARAMS, std::vector{params}, Buffer::Kind::uniform);
+    }
+
+    std::vector<gpu::BsdfOutput> run(const Material& material, const gpu::BsdfView& view,
+                                     const std::vector<gpu::BsdfInput>& inputs, bool follow) {
+        const Scene scene;
+        TextureTable textures(scene);
+        probe_.input(BIND_MATERIALS, std::vector{surface_of(scene, material, 1.0, textures)}, Buffer::Kind::uint_texels);
+        probe_.input(PROBE_VIEW, std::vector{view});
+        probe_.input(PROBE_INPUT, inputs);
+        probe_.output<gpu::BsdfOutput>(PROBE_OUTPUT, inputs.size());
+        probe_.run(inputs.size(), {.iteration = 0,
+                                   .round = 0,
+                                   .last_round = 0,
+                                   .offset = follow ? 1u : 0u,
+                                   .count = std::uint32_t(inputs.size())});
+        return probe_.result<gpu::BsdfOutput>(PROBE_OUTPUT, inputs.size());
+    }
+
+    Probe probe_{"bsdf", bsdf_words, 32, features};
+};
+
+constexpr reference::Lobe reference_lobe[] = {reference::Lobe::diffuse, reference::Lobe::reflection,
+                                              reference::Lobe::transmission, reference::Lobe::coat};
+
+std::string text(const glm::dvec3& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z); }
+
+/// Calls check(case, angle, wo) with the case's name in every failure.
+template <typename Check>
+void for_views(Check check) {
+    for (const float roughness : roughnesses) {
+        for (const Case& c : cases(roughness)) {
+            for (const double angle : angles) {
+                SCOPED_TRACE(fmt::format("{}, roughness {}, {} degrees", c.name, roughness, angle));
+                check(c, at_angle(angle));
+                if (testing::Test::HasFatalFailure()) return;
+            }
+        }
+    }
+}
+
+TEST_F(BsdfLobes, ValuesAreTheReferences) {
+    // Directions on the whole sphere, half of them near the peaks of the lobes.
+    std::mt19937 random(21);
+    std::normal_distribution<double> normal;
+    std::size_t bright = 0;
+    for_views([&](const Case& c, const glm::vec3& wo) {
+        const reference::Bsdf reference = reference_of(c);
+        std::vector<gpu::BsdfInput> inputs = random_numbers(500, random());
+        const auto sampled = run(c.material, view_of(c, wo, none), inputs, true);
+        for (std::size_t i = 0; i < inputs.size(); ++i) {
+            const glm::dvec3 v(normal(random), normal(random), normal(random));
+            const bool near = i % 2 == 0 && glm::dot(sampled[i].direction, sampled[i].direction) > 0.0f;
+            inputs[i].incoming = near ? sampled[i].direction : glm::vec3(glm::normalize(v));
+        }
+        const auto outputs = run(c.material, view_of(c, wo, none), inputs, false);
+        const double eta2 = std::pow(index_ratio(c), 2);
+        double alpha = reference.alpha;
+        if (reference.coat > 0.0 && reference.coat_alpha > 0.0) alpha = std::min(alpha, reference.coat_alpha);
+        for (std::size_t i = 0; i < inputs.size(); ++i) {
+            const glm::dvec3 wi(inputs[i].incoming);
+            if (std::abs(wi.z) < 1e-4) continue;
+            const glm::dvec3 want = reference.evaluate(glm::dvec3(wo), wi) * (wi.z < 0.0 ? eta2 : 1.0);
+            for (int channel = 0; channel < 3; ++channel) {
+                // Rounding of half vectors, in widths of the lobe.
+                const double tolerance = (2e-5 + 3e-6 / alpha) * want[channel] + 1e-7;
+                ASSERT_NEAR(outputs[i].value[channel], want[channel], tolerance)
+                    << "wi " << text(wi) << ", channel " << channel;
+            }
+            bright += want.y > 0.01 ? 1 : 0;
+        }
+    });
+    EXPECT_GT(bright, 10000u);
+}
+
+TEST_F(BsdfLobes, AreReciprocal) {
+    std::mt19937 random(22);
+    std::normal_distribution<double> normal;
+    for (const float roughness : roughnesses) {
+        for (const Case& c : cases(roughness)) {
+            // What comes through a clearcoat is weighed by the cosine of either direction's own side.
+            const bool skip_transmission = c.material.clearcoat > 0.0f && c.material.transmission > 0.0f;
+            SCOPED_TRACE(fmt::format("{}, roughness {}", c.name, roughness));
+            for (int pair = 0; pair < 20; ++pair) {
+                glm::vec3 wo(glm::normalize(glm::dvec3(normal(random), normal(random), std::abs(normal(random)))));
+                if (wo.z < 0.05f) continue;
+                auto inputs = random_numbers(8, random());
+                auto forth = run(c.material, view_of(c, wo, none), inputs, true);
+                for (const auto& there : forth) {
+                    const glm::vec3 wi = there.direction;
+                    if (there.density == 0.0f || std::abs(wi.z) < 0.05f || there.weight == glm::vec3(0.0f)) continue;
+                    const bool through = wi.z < 0.0f;
+                    if (through && skip_transmission) continue;
+                    Case other = c;
+                    if (through && c.material.thickness > 0.0f) other.front = !c.front;
+                    gpu::BsdfView view = view_of(other, wi, none);
+                    if (through) view.geometric = view.normal = view.clearcoat_normal = -view.normal;
+                    std::vector<gpu::BsdfInput> one(1);
+                    one[0].incoming = wo;
+                    const auto back = run(c.material, view, one, false)[0];
+                    // Radiance: f(wo, wi) / n_o^2 = f(wi, wo) / n_i^2.
+                    const double eta2 = through ? std::pow(index_ratio(c), 2) : 1.0;
+                    for (int channel = 0; channel < 3; ++channel) {
+                        const double a = there.value[channel] / eta2, b = back.value[channel];
+                        const double alpha = std::pow(std::min(roughness, 0.3f), 2.0) * 0.25;
+                        ASSERT_NEAR(a, b, (2e-5 + 2e-6 / alpha) * std::max(a, b) + 1e-7)
+                            << "wo " << text(glm::dvec3(wo)) << ", wi " << text(glm::dvec3(wi)) << ", channel "
+                            << channel;
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST_F(BsdfLobes, WeightsAverageToTheAlbedo) {
+    constexpr std::size_t samples = 1u << 15;
+    const auto inputs = random_numbers(samples, 23);
+    for_views([&](const Case& c, const glm::vec3& wo) {
+        const glm::dvec3 albedo = reference_of(c).directional_albedo(glm::dvec3(wo), 200);
+        const auto outputs = run(c.material, view_of(c, wo, none), inputs, true);
+        glm::dvec3 sum(0.0), squares(0.0);
+        double heaviest = 0.0;
+        for (const auto& out : outputs) {
+            if (out.lobe == none) continue;
+            const glm::dvec3 weight = glm::dvec3(out.weight) / double(out.probability);
+            sum += weight;
+            squares += weight * weight;
+            heaviest = std::max(heaviest, std::max({weight.x, weight.y, weight.z}));
+        }
+        for (int channel = 0; channel < 3; ++channel) {
+            const double mean = sum[channel] / samples;
+            const double error = std::sqrt(std::max(0.0, squares[channel] / samples - mean * mean) / samples);
+            // 1200 means: five standard errors; then the quadrature of the reference.
+            EXPECT_NEAR(mean, albedo[channel], 5.0 * error + 2e-4)
+                << "channel " << channel << ", standard error " << error << ", heaviest sample " << heaviest;
+            EXPECT_LE(mean, 1.0 + 5.0 * error) << "more light leaves than arrives";
+        }
+    });
+}
+
+/// Edges of bins that crowd at `peak` of [low, high] with the scale `width`, and the density of their parameter.
+struct Warp {
+    double low, peak, high, width;
+    double at(double t) const {  // t in [-1, 1]
+        const double span = t < 0.0 ? peak - low : high - peak;
+        const double k = std::log1p(span / width);
+        const double s = std::expm1(k * std::abs(t)) / std::expm1(k) * span;
+        return t < 0.0 ? peak - s : peak + s;
+    }
+    double slope(double t) const {
+        const double span = t < 0.0 ? peak - low : high - peak;
+        const double k = std::log1p(span / width);
+        return span * k * std::exp(k * std::abs(t)) / std::expm1(k);
+    }
+    double inverse(double x) const {
+        const double span = x < peak ? peak - low : high - peak;
+        const double k = std::log1p(span / width);
+        const double t = span > 0.0 ? std::log1p(std::abs(x - peak) / span * std::expm1(k)) / k : 0.0;
+        return x < peak ? -t : t;
+    }
+};
+
+/// Density of wi that following one lobe of width alpha about +z has, 1/sr: visible normals (Heitz 2014) times the
+/// Jacobian of reflection or of refraction (Walter et al. 2007, equations 14 and 17). ratio: index on the side of wo over
+/// that beyond.
+double lobe_density(LobeIndex lobe, double alpha, bool thin, double ratio, const glm::dvec3& wo, glm::dvec3 wi) {
+    if ((wi.z < 0.0) != (lobe == transmission)) return 0.0;
+    if (lobe == diffuse) return wi.z / pi;
+    double jacobian = 0.0;
+    glm::dvec3 h;
+    if (lobe == transmission && !thin) {
+        h = glm::normalize(ratio * wo + wi);
+        if (h.z < 0.0) h = -h;
+        const double oh = glm::dot(wo, h), ih = glm::dot(wi, h);
+        if (oh <= 0.0 || ih >= 0.0) return 0.0;
+        jacobian = -ih / std::pow(ratio * oh + ih, 2);
+    } else {
+        if (lobe == transmission) wi.z = -wi.z;
+        h = glm::normalize(wo + wi);
+        jacobian = 0.25 / glm::dot(wo, h);
+    }
+    const double tan2_h = (h.x * h.x + h.y * h.y) / (h.z * h.z), tan2_o = (wo.x * wo.x + wo.y * wo.y) / (wo.z * wo.z);
+    const double d = 1.0 / (pi * std::pow(alpha * h.z * h.z * (1.0 + tan2_h / (alpha * alpha)), 2));
+    const double g1 = 2.0 / (1.0 + std::sqrt(1.0 + alpha * alpha * tan2_o));
+    return d * g1 * glm::dot(wo, h) / wo.z * jacobian;
+}
+
+/// Bins of directions on one side of the surface: crowded about `peak`, aligned with the horizon.
+class SphereBins {
+public:
+    SphereBins(const glm::dvec3& peak, double width)
+        : side_(peak.z < 0.0 ? -1.0 : 1.0),
+          turn_(std::atan2(peak.y, peak.x)),
+          polar_{0.0, std::acos(std::min(1.0, std::abs(peak.z))), 0.5 * pi, width},
+          azimuth_{-pi, 0.0, pi, std::min(1.0, width / std::max(1e-3, std::hypot(peak.x, peak.y)))} {}
+
+    std::size_t count() const { return std::size_t(bins) * bins; }
+
+    std::size_t bin_of(const glm::dvec3& wi) const {
+        const double polar = std::acos(std::clamp(side_ * wi.z, 0.0, 1.0));
+        const double azimuth = std::remainder(std::atan2(wi.y, wi.x) - turn_, 2.0 * pi);
+        const auto index = [](double t) { return std::size_t(std::clamp(0.5 * (t + 1.0) * bins, 0.0, bins - 1.0)); };
+        return index(polar_.inverse(polar)) * bins + index(azimuth_.inverse(azimuth));
+    }
+
+    /// Midpoint rule of steps^2 points a bin.
+    template <typename Density>
+    std::vector<double> integrals(Density density) const {
+        constexpr int steps = 12;
+        std::vector<double> result(count(), 0.0);
+        const double cell = 2.0 / (bins * steps);
+        for (int i = 0; i < bins * steps; ++i) {
+            const double s = -1.0 + cell * (i + 0.5), polar = polar_.at(s);
+            for (int j = 0; j < bins * steps; ++j) {
+                const double t = -1.0 + cell * (j + 0.5), azimuth = azimuth_.at(t) + turn_;
+                const glm::dvec3 wi(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
+                                    side_ * std::cos(polar));
+                result[std::size_t(i / steps) * bins + std::size_t(j / steps)] +=
+                    density(wi) * std::sin(polar) * polar_.slope(s) * azimuth_.slope(t) * cell * cell;
+            }
+        }
+        return result;
+    }
+
+private:
+    static constexpr int bins = 14;
+    double side_, turn_;
+    Warp polar_, azimuth_;
+};
+
+struct LobeCase {
+    LobeIndex lobe;
+    const char* material;
+};
+
+TEST_F(BsdfLobes, DirectionsFollowTheDensityThatTheyReport) {
+    constexpr std::size_t samples = 60000;
+    const auto inputs = random_numbers(samples, 24);
+    const std::array lobes = {LobeCase{diffuse, "coat over diffuse"},      LobeCase{reflection, "gold"},
+                              LobeCase{reflection, "glass from inside"},   LobeCase{transmission, "glass"},
+                              LobeCase{transmission, "glass from inside"}, LobeCase{transmission, "diamond"},
+                              LobeCase{transmission, "thin glass"},        LobeCase{clearcoat, "clearcoat over diffuse"}};
+    const double level = sidak(1e-3, lobes.size() * roughnesses.size() * angles.size());
+    for_views([&](const Case& c, const glm::vec3& outgoing) {
+        for (const LobeCase& which : lobes) {
+            if (c.name != which.material) continue;
+            const LobeIndex lobe = which.lobe;
+            const glm::dvec3 wo = glm::normalize(glm::dvec3(outgoing));
+            const reference::Bsdf reference = reference_of(c);
+            const double alpha = lobe == clearcoat ? reference.coat_alpha : reference.alpha;
+            const double ratio = index_ratio(c);
+            const bool thin = reference.thin;
+            const auto density = [&](const glm::dvec3& wi) { return lobe_density(lobe, alpha, thin, ratio, wo, wi); };
+
+            glm::dvec3 peak(-wo.x, -wo.y, wo.z);
+            if (lobe == diffuse) peak = {0.0, 0.0, 1.0};
+            if (lobe == transmission && thin) peak.z = -wo.z;
+            if (lobe == transmission && !thin) {
+                const double across = std::min(0.999, ratio * std::hypot(wo.x, wo.y)), along = std::hypot(wo.x, wo.y);
+                peak = glm::dvec3(-wo.x, -wo.y, 0.0) * (along > 0.0 ? across / along : 0.0);
+                peak.z = -std::sqrt(1.0 - across * across);
+            }
+            const SphereBins bins(peak, lobe == diffuse ? 1.0 : alpha);
+            std::vector<double> expected = bins.integrals(density);
+            double whole = 0.0;
+            for (const double p : expected) whole += p;
+            ASSERT_LT(whole, 1.0 + 1e-3) << "lobe " << lobe;
+            expected.push_back(std::max(0.0, 1.0 - whole));  // what ends behind the horizon or is totally reflected
+
+            std::vector<std::uint64_t> observed(expected.size());
+            std::size_t followed = 0;
+            for (const auto& out : run(c.material, view_of(c, outgoing, lobe), inputs, true)) {
+                if (out.density >= delta) {
+                    ASSERT_EQ(out.weight, glm::vec3(0.0f)) << "lobe " << lobe << ": a rough lobe has a finite density";
+                    ++observed.back();
+                    continue;
+                }
+                const glm::dvec3 wi(out.direction);
+                ASSERT_NEAR(glm::length(wi), 1.0, 1e-6);
+                ++observed[bins.bin_of(wi)];
+                if (std::abs(wi.z) < 1e-3) continue;
+                const double want = density(glm::normalize(wi));
+                ASSERT_NEAR(out.density, want, (1e-4 + 1e-5 / alpha) * want + 1e-5)
+                    << "lobe " << lobe << ", wi " << text(wi) << ": density";
+                // f cos / density, lobe by lobe.
+                glm::dvec3 weight = reference.evaluate(reference_lobe[lobe], wo, wi) * (std::abs(wi.z) / want);
+                for (int channel = 0; channel < 3; ++channel) {
+                    ASSERT_NEAR(out.weight[channel], weight[channel], 1e-4 * weight[channel] + 1e-5)
+                        << "lobe " << lobe << ", wi " << text(wi) << ": weight, channel " << channel;
+                }
+                ++followed;
+            }
+            EXPECT_GT(followed, samples / 20);
+            expect_density(fmt::format("lobe {}", std::uint32_t(lobe)), chi_squared(observed, expected), level);
+        }
+    });
+}
+
+TEST_F(BsdfLobes, FollowingAndGatheringMakeOneWhole) {
+    // What following finds, weighed, and what photons bring from everywhere, weighed, add up to the albedo. Gathering is
+    // integrated over cosine-distributed directions of both sides: its weighed values times pi are at most knn or so.
+    constexpr std::size_t samples = 1u << 15;
+    const auto inputs = random_numbers(samples, 25);
+    std::vector<gpu::BsdfInput> everywhere = inputs;
+    for (std::size_t i = 0; i < samples; ++i) {
+        const double r = std::sqrt(double(inputs[i].u.x)), turn = 2.0 * pi * double(inputs[i].u.y);
+        const double z = std::sqrt(1.0 - r * r);
+        everywhere[i].incoming = glm::vec3(r * std::cos(turn), r * std::sin(turn), i % 2 == 0 ? z : -z);
+    }
+    for_views([&](const Case& c, const glm::vec3& wo) {
+        const glm::dvec3 albedo = reference_of(c).directional_albedo(glm::dvec3(wo), 200);
+        const double eta2 = std::pow(index_ratio(c), 2);
+        glm::dvec3 sum(0.0), squares(0.0);
+        const auto followed = run(c.material, view_of(c, wo, none), inputs, true);
+        const auto gathered = run(c.material, view_of(c, wo, none), everywhere, false);
+        double least = 1.0, most = 0.0;
+        for (std::size_t i = 0; i < samples; ++i) {
+            glm::dvec3 light = glm::dvec3(gathered[i].gathered) * (2.0 * pi);
+            if (everywhere[i].incoming.z < 0.0f) light /= eta2;
+            if (followed[i].lobe != none && followed[i].lobe != diffuse && followed[i].weight != glm::vec3(0.0f)) {
+                light += glm::dvec3(followed[i].weight) * double(followed[i].followed) / double(followed[i].probability);
+                least = std::min(least, double(followed[i].followed));
+                most = std::max(most, double(followed[i].followed));
+            }
+            sum += light;
+            squares += light * light;
+        }
+        for (int channel = 0; channel < 3; ++channel) {
+            const double mean = sum[channel] / samples;
+            const double error = std::sqrt(std::max(0.0, squares[channel] / samples - mean * mean) / samples);
+            EXPECT_NEAR(mean, albedo[channel], 5.0 * error + 5e-4)
+                << "channel " << channel << ", standard error " << error << ", weights of following from " << least
+                << " to " << most;
+        }
+    });
+}
+
+}  // namespace
+}  // namespace vkcppm::test
