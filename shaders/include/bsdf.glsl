@@ -165,14 +165,17 @@ float refraction_pdf(float alpha, vec3 n, float wo_n, vec3 h, float eta, float w
 // ---- lobes ----
 
 // What every lobe sends on of light along wo, about: the largest channel, coats at h = n; but over the diffuse base seen
-// from above, for there h is far from n at grazing angles. Lobes are chosen in proportion.
+// from above, for there h is far from n at grazing angles. Lobes are chosen in proportion. The facets of rough glass
+// turn from n to wo: some transmit where n would reflect all.
 vec4 lobes_of(Bsdf b, Surface surface, vec3 wo) {
     float cosine = min(1.0, dot(surface.normal, wo));
     float coat = clearcoat_fresnel(b, min(1.0, dot(surface.clearcoat_normal, wo)));
     vec4 lobes = vec4(largest(b.diffuse) * below_coat(b, 1.0) * below_clearcoat(b, 1.0), 0.0, 0.0, coat);
     if ((FEATURES & FEATURE_REFLECTION) != 0u) lobes.y = largest(facet_reflectance(b, cosine)) * (1.0 - coat);
     if ((FEATURES & FEATURE_TRANSMISSION) != 0u) {
-        lobes.z = largest(b.transmission) * facet_transmittance(b, cosine) * (1.0 - coat);
+        float transmittance = facet_transmittance(b, cosine);
+        if ((FEATURES & FEATURE_ROUGH) != 0u) transmittance = mix(transmittance, facet_transmittance(b, 1.0), b.alpha);
+        lobes.z = largest(b.transmission) * transmittance * (1.0 - coat);
     }
     return lobes;
 }
@@ -267,7 +270,8 @@ vec3 sample_lobe(uint lobe, Bsdf b, Surface surface, vec2 u, bool radiance, inou
         float wi_n = -dot(direction, n);
         if (wi_n <= 0.0 || dot(direction, surface.geometric) >= 0.0) return vec3(0.0);
         density = refraction_pdf(alpha, n, wo_n, h, b.eta, wo_h, cosine_t);
-        return weight * smith_g1(alpha, wi_n);
+        float lambda = smith_lambda(alpha, wo_n);
+        return weight * ((1.0 + lambda) / (1.0 + lambda + smith_lambda(alpha, wi_n)));
     }
     // Shading normals can bend a refracted ray back to its own side: it then goes on along the surface's far side.
     if (dot(refracted, surface.geometric) < 0.0) direction = refracted;
@@ -351,7 +355,9 @@ vec3 rough_bsdf(Bsdf b, Surface surface, vec3 wo, vec3 wi, uint part) {
             float wi_h = dot(wi, h);
             if (wo_h > 0.0 && wi_h < 0.0) {
                 float density = refraction_pdf(b.alpha, n, wo_n, h, b.eta, wo_h, -wi_h);
-                float f = density * smith_g1(b.alpha, wi_n) * b.eta * b.eta / -wi_n;
+                float lambda = smith_lambda(b.alpha, wo_n);
+                float masking = (1.0 + lambda) / (1.0 + lambda + smith_lambda(b.alpha, wi_n));
+                float f = density * masking * b.eta * b.eta / -wi_n;
                 float weight = weight_of(part, density, wi_n);
                 sum += tint * (facet_transmittance(b, min(1.0, wo_h)) * f * weight);
             }
