@@ -26,7 +26,9 @@ void main() {
     if (launch.offset != 0u) {
         result.lobe = view.lobe;
         if (view.lobe == LOBE_NONE) {
-            result.lobe = choose_lobe(lobes_of(bsdf, surface, view.outgoing), inputs[i].u.z, result.probability);
+            float inverse_probability;
+            result.lobe = choose_lobe(lobes_of(bsdf, surface, view.outgoing), inputs[i].u.z, inverse_probability);
+            result.probability = 1.0 / inverse_probability;
         }
         result.direction = -view.outgoing;
         result.weight = sample_lobe(result.lobe, bsdf, surface, inputs[i].u.xy, view.radiance != 0u, result.direction,
@@ -34,7 +36,7 @@ void main() {
         vec3 n = result.lobe == LOBE_CLEARCOAT ? surface.clearcoat_normal : surface.normal;
         result.followed = followed_weight(result.density, dot(result.direction, n));
     }
-    result.value = gathered_bsdf(bsdf, surface, view.outgoing, result.direction, false);
-    result.gathered = gathered_bsdf(bsdf, surface, view.outgoing, result.direction, true);
+    result.value = rough_bsdf(bsdf, surface, view.outgoing, result.direction, PART_ALL);
+    result.gathered = rough_bsdf(bsdf, surface, view.outgoing, result.direction, PART_GATHERED);
     outputs[i] = result;
 }

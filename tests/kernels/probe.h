@@ -99,7 +99,7 @@ struct BsdfOutput {
     vec3 weight;         // of sample_lobe
     float density;
     float followed;      // followed_weight
-    vec3 value;          // gathered_bsdf of all light
+    vec3 value;          // rough_bsdf of all light
     vec3 gathered;       // of light that following the lobe finds, too
 };
 

@@ -24,7 +24,9 @@ void main() {
     ScatterOutput result;
     result.reflectance = fresnel_dielectric(cosine, bsdf.eta, result.cosine_t);
     result.facet = facet_reflectance(bsdf, cosine);
-    result.lobe = choose_lobe(lobes_of(bsdf, surface, -s.direction), s.u, result.probability);
+    float inverse_probability;
+    result.lobe = choose_lobe(lobes_of(bsdf, surface, -s.direction), s.u, inverse_probability);
+    result.probability = 1.0 / inverse_probability;
     result.direction = s.direction;
     result.factor =
         sample_lobe(result.lobe, bsdf, surface, vec2(0.0), s.radiance != 0u, result.direction, result.density);
