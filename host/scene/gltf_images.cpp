@@ -28,23 +28,28 @@ std::optional<std::uint32_t> GltfImages::index(std::size_t image) {
     if (!is_new) return found->second;
 
     if (has_view) {
-        images_.push_back(decode(views_.bytes(source["bufferView"].get<std::size_t>()), name, object));
+        found->second = decode(views_.bytes(source["bufferView"].get<std::size_t>()), name, object);
     } else {
         std::string why;
         const std::optional<Bytes> bytes = read_uri(uri, max_gltf_bytes, object + ".uri", file_.name, hash_, why);
         if (!bytes) {
             warnings_.add("its textures are ignored, the image is absent", fmt::format("{} ({})", object, why));
-            return std::nullopt;
+        } else if (is_data_uri(uri)) {
+            found->second = decode(*bytes, name, object);
+        } else {
+            found->second = decode(*bytes, name.empty() ? uri : name, fmt::format("{} ({})", object, json_text(uri)));
         }
-        const std::string where = is_data_uri(uri) ? object : fmt::format("{} ({})", object, json_text(uri));
-        images_.push_back(decode(*bytes, name.empty() && !is_data_uri(uri) ? uri : name, where));
     }
-    found->second = std::uint32_t(images_.size() - 1);
     return found->second;
 }
 
-TextureImage GltfImages::decode(std::span<const std::uint8_t> bytes, const std::string& name,
-                                const std::string& object) {
+/// The place of the picture in `bytes` among those decoded; none, with a warning, where its format is foreign.
+std::optional<std::uint32_t> GltfImages::decode(std::span<const std::uint8_t> bytes, const std::string& name,
+                                                const std::string& object) {
+    if (const std::string_view format = foreign_format(bytes); !format.empty()) {
+        warnings_.add(fmt::format("its textures are ignored, this program lacks {}", format), object);
+        return std::nullopt;
+    }
     try {
         const Extent size = picture_size(bytes);
         if (size.width > max_image_side || size.height > max_image_side) {
@@ -52,7 +57,8 @@ TextureImage GltfImages::decode(std::span<const std::uint8_t> bytes, const std::
                       fmt::format("the limit is {} texels a side", max_image_side));
         }
         check_total(texels_ += size.pixels(), max_texels, "texels, with those of " + object, file_.name);
-        return {name, size, decode_picture(bytes)};
+        images_.push_back({name, size, decode_picture(bytes)});
+        return std::uint32_t(images_.size() - 1);
     } catch (const Error&) {
         throw;
     } catch (const std::runtime_error& error) {

@@ -20,10 +20,11 @@ public:
     /// Keeps all three.
     GltfImages(const GltfFile& file, GltfViews& views, Warnings& warnings);
 
-    /// The place of images[i] among images(), decoded on its first use; images with one source share it. None, with a
-    /// warning, where its file is not there: the factor alone is a picture that still says something.
-    /// Throws Error(bad_scene) where the image has no source or two, lies outside of the scene's folder, is neither PNG
-    /// nor JPEG, is broken, or is too large, alone or with the others.
+    /// The place of images[i] among those decoded, which it is on its first use; images with one source share it. None,
+    /// with a warning, where its file is not there or in a format that only an extension allows (KTX2, WebP, DDS):
+    /// the factor alone is a picture that still says something.
+    /// Throws Error(bad_scene) where the image has no source or two, lies outside of the scene's folder, is broken, or
+    /// is too large, alone or with the others.
     std::optional<std::uint32_t> index(std::size_t image);
 
     /// Hands over what was decoded, in the order of index().
@@ -33,7 +34,8 @@ public:
     std::uint64_t hash() const { return hash_; }
 
 private:
-    TextureImage decode(std::span<const std::uint8_t> bytes, const std::string& name, const std::string& object);
+    std::optional<std::uint32_t> decode(std::span<const std::uint8_t> bytes, const std::string& name,
+                                        const std::string& object);
 
     const GltfFile& file_;
     GltfViews& views_;

@@ -26,16 +26,7 @@ bool starts_with(Bytes bytes, std::string_view signature) {
 bool is_png(Bytes bytes) { return starts_with(bytes, "\x89PNG\r\n\x1a\n"); }
 bool is_jpeg(Bytes bytes) { return starts_with(bytes, "\xff\xd8\xff"); }
 
-/// What the bytes are instead, for the message.
-[[noreturn]] void refuse_format(Bytes bytes) {
-    const bool is_webp = starts_with(bytes, "RIFF") && bytes.size() >= 12 && starts_with(bytes.subspan(8), "WEBP");
-    const char* format = is_webp                                ? "WebP"
-                         : starts_with(bytes, "\xabKTX 20\xbb") ? "KTX2"
-                         : starts_with(bytes, "DDS ")           ? "DDS"
-                         : starts_with(bytes, "GIF8")           ? "GIF"
-                                                                : "something else";
-    throw std::runtime_error(fmt::format("it is {}, not PNG or JPEG", format));
-}
+[[noreturn]] void refuse_format() { throw std::runtime_error("neither PNG nor JPEG"); }
 
 /// libpng over bytes in memory. Its errors are long jumps: they cross no frame but libpng's and guarded()'s, and none
 /// of them holds anything to destroy.
@@ -142,16 +133,23 @@ private:
 
 }  // namespace
 
+std::string_view foreign_format(Bytes bytes) {
+    if (starts_with(bytes, "\xabKTX 20\xbb")) return "KTX2";
+    if (starts_with(bytes, "RIFF") && bytes.size() >= 12 && starts_with(bytes.subspan(8), "WEBP")) return "WebP";
+    if (starts_with(bytes, "DDS ")) return "DDS";
+    return {};
+}
+
 Extent picture_size(Bytes bytes) {
     if (is_png(bytes)) return PngReader(bytes).size();
     if (is_jpeg(bytes)) return JpegReader(bytes).size();
-    refuse_format(bytes);
+    refuse_format();
 }
 
 std::vector<std::uint8_t> decode_picture(Bytes bytes) {
     if (is_png(bytes)) return PngReader(bytes).rgba();
     if (is_jpeg(bytes)) return JpegReader(bytes).rgba();
-    refuse_format(bytes);
+    refuse_format();
 }
 
 }  // namespace vkcppm

@@ -3,11 +3,15 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/image.h"
 
 namespace vkcppm {
+
+/// The name of the format where it is one of those that glTF extensions allow and this program lacks, else empty.
+std::string_view foreign_format(std::span<const std::uint8_t> bytes);
 
 /// Width and height by the header alone, before memory for the texels is needed.
 /// Throws std::runtime_error with the reason where the bytes are neither PNG nor JPEG or the header is broken.

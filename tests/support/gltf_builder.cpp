@@ -37,7 +37,7 @@ std::string GltfBuilder::gltf_with_uri(const std::string& uri) const {
 }
 
 std::string GltfBuilder::gltf() const {
-    return gltf_with_uri("data:application/octet-stream;base64," + base64(bytes()));
+    return gltf_with_uri(data_uri(bytes(), "application/octet-stream"));
 }
 
 std::string GltfBuilder::glb() const {
@@ -46,6 +46,10 @@ std::string GltfBuilder::glb() const {
     const std::string json = padded(whole.dump(), ' '), binary = padded(bytes(), '\0');
     return "glTF" + u32(2) + u32(12 + 8 + json.size() + 8 + binary.size()) + u32(json.size()) + "JSON" + json +
            u32(binary.size()) + std::string("BIN\0", 4) + binary;
+}
+
+std::string data_uri(const std::string& bytes, const std::string& media_type) {
+    return "data:" + media_type + ";base64," + base64(bytes);
 }
 
 GltfBuilder one_triangle() {

@@ -44,6 +44,12 @@ public:
     /// A mesh of one primitive, e.g. {{"attributes", {{"POSITION", 0}}}}.
     int mesh(const nlohmann::json& primitive) { return add("meshes", {{"primitives", {primitive}}}); }
 
+    /// The index of a texture without sampler whose image is the bytes of a picture's file, in a bufferView.
+    int texture(const std::string& file) {
+        const int data = view(std::vector<char>(file.begin(), file.end()));
+        return add("textures", {{"source", add("images", {{"bufferView", data}, {"mimeType", "image/png"}})}});
+    }
+
     /// The document as .gltf, its buffer as a base64 data URI.
     std::string gltf() const;
 
@@ -58,6 +64,9 @@ public:
 private:
     std::vector<char> buffer_;
 };
+
+/// "data:<media type>;base64,..."
+std::string data_uri(const std::string& bytes, const std::string& media_type);
 
 /// One triangle (0,0,0), (1,0,0), (0,1,0) without normals at a node without transform: the least file that shows
 /// something. Accessor 0 is POSITION, mesh 0, node 0.

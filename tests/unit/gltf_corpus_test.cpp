@@ -80,6 +80,7 @@ TEST(GltfCorpus, KhronosSampleModelsHaveTheTrianglesTheyShould) {
     const std::map<std::string, std::size_t> instanced = {
         {"GlassVaseFlowers.glb", 14036},
         {"SimpleMeshes.gltf", 2},
+        {"SimpleInstancing.glb", 125 * 12},
         {"TextureTransformTest.gltf", 24},
         {"MeshPrimitiveModes.gltf", 16},
         {"MetalRoughSpheresNoTextures.glb", 1040409 - 196},  // 196 at the poles of spheres have no area

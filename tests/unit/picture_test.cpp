@@ -1,0 +1,144 @@
+// PNG and JPEG files to texels: every layout of the formats, and what is broken.
+
+#include "scene/picture.h"
+
+#include <stdexcept>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include "support/pictures.h"
+
+namespace vkcppm {
+namespace {
+
+using Texels = std::vector<std::uint8_t>;
+using test::PngFormat;
+
+std::span<const std::uint8_t> bytes_of(const std::string& text) {
+    return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+Texels decode(const std::string& file) { return decode_picture(bytes_of(file)); }
+
+/// Why a file is refused; empty where it is not.
+std::string refusal(const std::string& file) {
+    try {
+        decode(file);
+    } catch (const std::runtime_error& error) {
+        return error.what();
+    }
+    return {};
+}
+
+TEST(Picture, ReadsEveryLayoutOfPng) {
+    const Extent two = {2, 1};
+    EXPECT_EQ(decode(test::encode_png(two, {PNG_COLOR_TYPE_RGBA, 8}, {1, 2, 3, 4, 5, 6, 7, 8})),
+              (Texels{1, 2, 3, 4, 5, 6, 7, 8}));
+    EXPECT_EQ(decode(test::encode_png(two, {PNG_COLOR_TYPE_RGB, 8}, {1, 2, 3, 4, 5, 6})),
+              (Texels{1, 2, 3, 255, 4, 5, 6, 255}));
+    EXPECT_EQ(decode(test::encode_png(two, {PNG_COLOR_TYPE_GRAY, 8}, {7, 200})),
+              (Texels{7, 7, 7, 255, 200, 200, 200, 255}));
+    EXPECT_EQ(decode(test::encode_png(two, {PNG_COLOR_TYPE_GRAY_ALPHA, 8}, {7, 8, 200, 0})),
+              (Texels{7, 7, 7, 8, 200, 200, 200, 0}));
+    EXPECT_EQ(decode(test::encode_png(two, {PNG_COLOR_TYPE_GRAY, 1}, {0b10000000})),
+              (Texels{255, 255, 255, 255, 0, 0, 0, 255}));
+    EXPECT_EQ(decode(test::encode_png(two, {PNG_COLOR_TYPE_GRAY, 2}, {0b01110000})),
+              (Texels{85, 85, 85, 255, 255, 255, 255, 255}));
+}
+
+TEST(Picture, RoundsSixteenBitsToEight) {
+    // v / 257, rounded: 0x7fff is 127.498, 0x8000 is 127.502, 0x0081 is 0.502.
+    const Texels rows = {0x7f, 0xff, 0x80, 0x00, 0xff, 0xff, 0x00, 0x81};
+    EXPECT_EQ(decode(test::encode_png({1, 1}, {PNG_COLOR_TYPE_RGBA, 16}, rows)), (Texels{127, 128, 255, 1}));
+}
+
+TEST(Picture, ReadsAPaletteWithTransparencyAndATransparentGrey) {
+    PngFormat palette{PNG_COLOR_TYPE_PALETTE, 4};
+    palette.palette = {10, 20, 30, 40, 50, 60};
+    palette.palette_alpha = {99};  // the second entry is opaque
+    EXPECT_EQ(decode(test::encode_png({2, 1}, palette, {0x01})), (Texels{10, 20, 30, 99, 40, 50, 60, 255}));
+    PngFormat gray{PNG_COLOR_TYPE_GRAY, 8};
+    gray.transparent_gray = 7;
+    EXPECT_EQ(decode(test::encode_png({2, 1}, gray, {7, 8})), (Texels{7, 7, 7, 0, 8, 8, 8, 255}));
+}
+
+TEST(Picture, ReadsAnInterlacedPngWithTheFirstRowOnTop) {
+    Texels rgba;
+    for (int i = 0; i < 9 * 7; ++i) rgba.insert(rgba.end(), {std::uint8_t(i), std::uint8_t(3 * i), 5, 250});
+    PngFormat format{PNG_COLOR_TYPE_RGBA, 8, true};
+    const std::string file = test::encode_png({9, 7}, format, rgba);
+    EXPECT_EQ(picture_size(bytes_of(file)), (Extent{9, 7}));
+    EXPECT_EQ(decode(file), rgba);
+}
+
+TEST(Picture, IgnoresTheGammaOfAPng) {
+    PngFormat format{PNG_COLOR_TYPE_GRAY, 8};
+    format.gamma = 1.0;
+    EXPECT_EQ(decode(test::encode_png({1, 1}, format, {100})), (Texels{100, 100, 100, 255}));
+}
+
+TEST(Picture, ReadsAJpeg) {
+    Texels red_above_blue;  // halves on blocks of the transform
+    for (int y = 0; y < 16; ++y) {
+        for (int x = 0; x < 8; ++x) {
+            const std::array<std::uint8_t, 3> rgb = y < 8 ? std::array<std::uint8_t, 3>{250, 20, 30}
+                                                          : std::array<std::uint8_t, 3>{10, 40, 240};
+            red_above_blue.insert(red_above_blue.end(), rgb.begin(), rgb.end());
+        }
+    }
+    const std::string file = test::encode_jpeg({8, 16}, red_above_blue);
+    EXPECT_EQ(picture_size(bytes_of(file)), (Extent{8, 16}));
+    const Texels texels = decode(file);
+    ASSERT_EQ(texels.size(), 4u * 8 * 16);
+    for (std::size_t i = 0; i < 8 * 16; ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            EXPECT_NEAR(int(texels[4 * i + c]), int(red_above_blue[3 * i + c]), 3) << "texel " << i << " channel " << c;
+        }
+        EXPECT_EQ(texels[4 * i + 3], 255) << "texel " << i;
+    }
+    const Texels gray = decode(test::encode_jpeg({8, 8}, Texels(64, 77), true));
+    for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(int(gray[c]), c < 3 ? 77 : 255, 1) << "channel " << c;
+}
+
+TEST(Picture, RefusesEveryTruncationOfTheTexels) {
+    Texels noise;
+    for (unsigned i = 0; i < 3 * 32 * 32; ++i) noise.push_back(std::uint8_t(i * i * 2654435761u >> 13));
+    const std::string png = test::encode_png({32, 32}, {PNG_COLOR_TYPE_RGB, 8}, noise);
+    const std::string jpeg = test::encode_jpeg({32, 32}, noise);
+    const std::size_t png_trailer = 12 + 4 + 4;  // IEND, then the checksum of the texels and that of zlib
+    for (std::size_t size = 0; size + png_trailer < png.size(); size += 7) {
+        EXPECT_NE(refusal(png.substr(0, size)), "") << "the first " << size << " of " << png.size() << " bytes of PNG";
+    }
+    for (std::size_t size = 0; size + 2 < jpeg.size(); size += 7) {
+        EXPECT_NE(refusal(jpeg.substr(0, size)), "") << "the first " << size << " of " << jpeg.size() << " of JPEG";
+    }
+}
+
+TEST(Picture, SaysWhyAFileIsBroken) {
+    std::string png = test::one_texel_png({1, 2, 3, 4});
+    png[png.find("IDAT") + 6] ^= 0x55;
+    EXPECT_TRUE(refusal(png).starts_with("broken PNG: ")) << refusal(png);
+    EXPECT_EQ(refusal("GIF89a, or whatever it is"), "neither PNG nor JPEG");
+    EXPECT_EQ(refusal(""), "neither PNG nor JPEG");
+    EXPECT_TRUE(refusal("\xff\xd8\xff\xe0 nothing more").starts_with("broken JPEG: "));
+}
+
+TEST(Picture, KnowsTheFormatsOfExtensions) {
+    EXPECT_EQ(foreign_format(bytes_of("\xabKTX 20\xbb\r\n\x1a\n")), "KTX2");
+    EXPECT_EQ(foreign_format(bytes_of("RIFF....WEBPVP8 ")), "WebP");
+    EXPECT_EQ(foreign_format(bytes_of("RIFF....WAVE")), "");
+    EXPECT_EQ(foreign_format(bytes_of("DDS |")), "DDS");
+    EXPECT_EQ(foreign_format(bytes_of(test::one_texel_png({1, 2, 3, 4}))), "");
+}
+
+TEST(Picture, ReadsTheSizeOfAHugePictureFromTheHeader) {
+    std::string jpeg = test::encode_jpeg({8, 8}, Texels(64, 9), true);
+    const std::size_t frame = jpeg.find("\xff\xc0");
+    for (const std::size_t i : {5, 7}) jpeg.replace(frame + i, 2, "\xff\xdc");  // the most that the library reads
+    EXPECT_EQ(picture_size(bytes_of(jpeg)), (Extent{65500, 65500}));
+}
+
+}  // namespace
+}  // namespace vkcppm
