@@ -28,40 +28,44 @@ bool is_jpeg(Bytes bytes) { return starts_with(bytes, "\xff\xd8\xff"); }
 
 [[noreturn]] void refuse_format() { throw std::runtime_error("neither PNG nor JPEG"); }
 
+/// libpng's state, which goes with its owner even where that one's constructor throws.
+struct PngState {
+    png_structp png = nullptr;
+    png_infop info = nullptr;
+    PngState() = default;
+    PngState(const PngState&) = delete;
+    PngState& operator=(const PngState&) = delete;
+    ~PngState() { png_destroy_read_struct(&png, &info, nullptr); }
+};
+
 /// libpng over bytes in memory. Its errors are long jumps: they cross no frame but libpng's and guarded()'s, and none
 /// of them holds anything to destroy.
 class PngReader {
 public:
     explicit PngReader(Bytes bytes) : rest_(bytes) {
-        png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, on_error, on_warning);
-        info_ = png_ ? png_create_info_struct(png_) : nullptr;
-        if (!info_) {
-            png_destroy_read_struct(&png_, nullptr, nullptr);
-            throw std::bad_alloc();
-        }
-        png_set_read_fn(png_, this, on_read);
-        guarded([](PngReader& reader) { png_read_info(reader.png_, reader.info_); });
+        state_.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, on_error, on_warning);
+        state_.info = state_.png ? png_create_info_struct(state_.png) : nullptr;
+        if (!state_.info) throw std::bad_alloc();
+        png_set_read_fn(state_.png, this, on_read);
+        guarded([](PngReader& reader) { png_read_info(reader.state_.png, reader.state_.info); });
     }
-    PngReader(const PngReader&) = delete;
-    PngReader& operator=(const PngReader&) = delete;
-    ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
 
-    Extent size() const { return {png_get_image_width(png_, info_), png_get_image_height(png_, info_)}; }
+    Extent size() const { return {png_get_image_width(state_.png, state_.info), png_get_image_height(state_.png, state_.info)}; }
 
     std::vector<std::uint8_t> rgba() {
         guarded([](PngReader& reader) {
-            png_set_expand(reader.png_);
-            png_set_scale_16(reader.png_);
-            png_set_gray_to_rgb(reader.png_);
-            png_set_add_alpha(reader.png_, 0xff, PNG_FILLER_AFTER);
-            png_set_interlace_handling(reader.png_);
-            png_read_update_info(reader.png_, reader.info_);
+            png_set_expand(reader.state_.png);
+            png_set_scale_16(reader.state_.png);
+            png_set_gray_to_rgb(reader.state_.png);
+            png_set_add_alpha(reader.state_.png, 0xff, PNG_FILLER_AFTER);
+            png_set_interlace_handling(reader.state_.png);
+            png_read_update_info(reader.state_.png, reader.state_.info);
         });
         const std::size_t stride = 4 * std::size_t(size().width);
         std::vector<std::uint8_t> texels(stride * size().height);
         rows_.resize(size().height);
         for (std::size_t y = 0; y < rows_.size(); ++y) rows_[y] = texels.data() + y * stride;
-        guarded([](PngReader& reader) { png_read_image(reader.png_, reader.rows_.data()); });
+        guarded([](PngReader& reader) { png_read_image(reader.state_.png, reader.rows_.data()); });
         return texels;
     }
 
@@ -71,7 +75,7 @@ private:
     }
 
     bool completes(void (*step)(PngReader&)) {
-        if (setjmp(png_jmpbuf(png_))) return false;
+        if (setjmp(png_jmpbuf(state_.png))) return false;
         step(*this);
         return true;
     }
@@ -92,8 +96,7 @@ private:
     }
 
     Bytes rest_;
-    png_structp png_ = nullptr;
-    png_infop info_ = nullptr;
+    PngState state_;
     std::vector<png_bytep> rows_;
     std::array<char, 200> message_{};
 };

@@ -18,8 +18,8 @@ std::string_view foreign_format(std::span<const std::uint8_t> bytes);
 Extent picture_size(std::span<const std::uint8_t> bytes);
 
 /// [4 x width x height] red, green, blue, alpha; first row on top. Grey, palettes and a transparent colour are
-/// expanded, 16 bits are rounded to 8, alpha is 255 where there is none. The values are as in the file: gamma, colour profiles
-/// and orientation are ignored, as glTF 2.0, section 3.8.3, asks.
+/// expanded, 16 bits are rounded to 8, alpha is 255 where there is none. The values are as in the file: gamma, colour
+/// profiles and orientation are ignored, as glTF 2.0, section 3.8.3, asks.
 /// Throws std::runtime_error with the reason where the file is broken, even in part.
 std::vector<std::uint8_t> decode_picture(std::span<const std::uint8_t> bytes);
 

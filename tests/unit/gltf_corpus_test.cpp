@@ -44,7 +44,8 @@ bool is_unit(const glm::vec3& v) { return std::abs(glm::length(v) - 1.0f) < 1e-5
 
 /// Whether a vector of vertices is empty or has one entry a vertex, all of which are sound.
 template <typename T, typename IsSound>
-void expect_sound_vertices(const Scene& scene, const std::vector<T>& values, const char* name, const IsSound& is_sound) {
+void expect_sound_vertices(const Scene& scene, const std::vector<T>& values, const char* name,
+                           const IsSound& is_sound) {
     EXPECT_TRUE(values.empty() || values.size() == scene.positions.size()) << name << ": " << values.size() << " for "
                                                                            << scene.positions.size() << " vertices";
     EXPECT_EQ(std::ranges::count_if(values, std::not_fn(is_sound)), 0) << name;
@@ -106,7 +107,7 @@ std::vector<std::string> lines_of(const fs::path& file) {
     return lines;
 }
 
-/// Every file below the folder must load, sound and with the lines that are on record for it, or be refused as recorded.
+/// Every file below the folder must load, sound and with the lines that are on record for it, or be refused with its.
 void expect_recorded_lines(const fs::path& folder) {
     std::map<fs::path, std::vector<std::string>> recorded;
     const fs::path record = fs::path(VKCPPM_SOURCE_DIR) / "tests/unit/gltf_corpus_lines.json";

@@ -264,7 +264,8 @@ TEST(HostileFile, WhatIsNotGltf) {
 TEST(HostileFile, DeepJson) {
     const std::string brackets(1000000, '[');
     expect_bad_scene(R"({"asset": {"version": "2.0"}, "extras": )" + brackets, {"depth of the JSON is 65", "64"});
-    const std::string quoted_brackets = R"({"asset": {"version": "2.0"}, "scene": 0, "extras": "\"[)" + brackets + "\"}";
+    const std::string quoted_brackets =
+        R"({"asset": {"version": "2.0"}, "scene": 0, "extras": "\"[)" + brackets + "\"}";
     expect_bad_scene(quoted_brackets, {"scene is 0"});
 }
 

@@ -408,7 +408,8 @@ TEST(HostileImage, IsRefusedByALineThatNamesIt) {
 
 /// An all-black PNG.
 std::string black_png(const Extent& size) {
-    return test::encode_png(size, {PNG_COLOR_TYPE_GRAY, 1}, std::vector<std::uint8_t>((size.width + 7) / 8 * size.height));
+    const std::vector<std::uint8_t> rows((size.width + 7) / 8 * size.height);
+    return test::encode_png(size, {PNG_COLOR_TYPE_GRAY, 1}, rows);
 }
 
 TEST(HostileImage, IsRefusedWhereItIsTooLarge) {
@@ -441,7 +442,9 @@ TEST(HostileTexture, IsRefusedByALineThatNamesIt) {
     expect_bad_scene(with({{"sampler", 0}}, none).gltf(), {"textures[0].sampler is 0", "samplers has 0"});
     expect_bad_scene(with(none, {{"texCoord", -1}}).gltf(), {"materials[0].normalTexture.texCoord is -1", "0 to"});
     expect_bad_scene(with(none, {{"scale", "big"}}).gltf(), {"materials[0].normalTexture.scale is \"big\"", "number"});
-    const auto transform = [](const json& value) -> json { return {{"extensions", {{"KHR_texture_transform", value}}}}; };
+    const auto transform = [](const json& value) -> json {
+        return {{"extensions", {{"KHR_texture_transform", value}}}};
+    };
     expect_bad_scene(with(none, transform({{"scale", {1, 1e9}}})).gltf(),
                      {"materials[0].normalTexture.extensions.KHR_texture_transform is 1000000000", "16777216"});
     expect_bad_scene(with(none, transform({{"offset", {1}}})).gltf(), {"offset is an array of 1", "must hold 2"});

@@ -124,18 +124,18 @@ TEST(GltfUv, AreZeroForPrimitivesThatHaveNone) {
                                                                             test::one_texel_png({0, 0, 0, 0}))}}}});
     const Scene scene = load(builder);
     ASSERT_EQ(scene.triangles.size(), 3u);
-    EXPECT_EQ(scene.uv[0], (std::vector<glm::vec2>{{0, 0}, {0, 0}, {0, 0}, {1, 2}, {3, 4}, {5, 6}, {0, 0}, {0, 0}, {0, 0}}));
+    const glm::vec2 none(0);
+    EXPECT_EQ(scene.uv[0], (std::vector<glm::vec2>{none, none, none, {1, 2}, {3, 4}, {5, 6}, none, none, none}));
 }
 
 TEST(GltfUv, SeparateTheVerticesOfPrimitivesThatShareTheRest) {
     GltfBuilder builder = test::one_triangle();
     add_normals(builder);
     add_texture(builder, 0);
-    const int first = add_attribute<float, 2>(builder, "TEXCOORD_0", 5126, false, {{0, 0}, {1, 0}, {0, 1}});
+    add_attribute<float, 2>(builder, "TEXCOORD_0", 5126, false, {{0, 0}, {1, 0}, {0, 1}});
     const json one = primitive(builder);
     add_attribute<float, 2>(builder, "TEXCOORD_0", 5126, false, {{5, 5}, {6, 5}, {5, 6}});
     const json other = primitive(builder);
-    EXPECT_NE(one["attributes"]["TEXCOORD_0"], other["attributes"]["TEXCOORD_0"]) << first;
     builder.document["meshes"][0]["primitives"] = {one, other, one};
     const Scene scene = load(builder);
     EXPECT_EQ(scene.uv[0], (std::vector<glm::vec2>{{0, 0}, {1, 0}, {0, 1}, {5, 5}, {6, 5}, {5, 6}}));
@@ -165,8 +165,10 @@ void expect_colors_of_type(int component, const std::vector<std::array<T, N>>& v
 }
 
 TEST(GltfColor, ReadsEveryTypeWithAndWithoutAlpha) {
-    const std::array<glm::vec4, 3> opaque = {glm::vec4(0, 0.2f, 1, 1), glm::vec4(1, 0, 0, 1), glm::vec4(0, 0, 0.4f, 1)};
-    const std::array<glm::vec4, 3> clear = {glm::vec4(0, 0.2f, 1, 0), glm::vec4(1, 0, 0, 0.8f), glm::vec4(0, 0, 0.4f, 1)};
+    const std::array<glm::vec4, 3> opaque = {
+        {{0.0f, 0.2f, 1.0f, 1.0f}, {1.0f, 0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.4f, 1.0f}}};
+    const std::array<glm::vec4, 3> clear = {
+        {{0.0f, 0.2f, 1.0f, 0.0f}, {1.0f, 0.0f, 0.0f, 0.8f}, {0.0f, 0.0f, 0.4f, 1.0f}}};
     expect_colors_of_type<float, 3>(5126, {{0, 0.2f, 1}, {1, 0, 0}, {0, 0, 0.4f}}, opaque);
     expect_colors_of_type<float, 4>(5126, {{0, 0.2f, 1, 0}, {1, 0, 0, 0.8f}, {0, 0, 0.4f, 1}}, clear);
     expect_colors_of_type<std::uint8_t, 3>(5121, {{0, 51, 255}, {255, 0, 0}, {0, 0, 102}}, opaque);
@@ -228,7 +230,8 @@ TEST(GltfTangent, TurnsWithItsNodeAndFlipsItsSignInAMirror) {
     expect_tangents(stretched, {glm::vec4(1, 0, 0, 1), glm::vec4(slanted, -1), glm::vec4(0, 1, 0, 1)});
     builder.document["nodes"] = {{{"mesh", 0}, {"scale", {-2, 1, 1}}}};
     const Scene mirrored = load(builder);  // the winding turns over: corners 1 and 2 change places
-    expect_tangents(mirrored, {glm::vec4(-1, 0, 0, -1), glm::vec4(0, 1, 0, -1), glm::vec4(-slanted.x, slanted.y, 0, 1)});
+    expect_tangents(mirrored,
+                    {glm::vec4(-1, 0, 0, -1), glm::vec4(0, 1, 0, -1), glm::vec4(-slanted.x, slanted.y, 0, 1)});
     // The bitangent w cross(n, t) is the mirror image of what it was: y stays.
     const glm::vec4 t = at_corners(mirrored, mirrored.tangents)[0];
     EXPECT_EQ(t.w * glm::cross(at_corners(mirrored, mirrored.normals)[0], glm::vec3(t)), glm::vec3(0, 1, 0));
@@ -242,7 +245,8 @@ TEST(GltfTangent, WithoutDirectionIsNone) {
 
 TEST(GltfTangent, ReadsQuantizedOnes) {
     GltfBuilder builder = with_tangents({{1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}});
-    add_attribute<std::int8_t, 4>(builder, "TANGENT", 5120, true, {{127, 0, 0, 127}, {0, -127, 0, -127}, {0, 0, 64, 127}});
+    add_attribute<std::int8_t, 4>(builder, "TANGENT", 5120, true,
+                                  {{127, 0, 0, 127}, {0, -127, 0, -127}, {0, 0, 64, 127}});
     const Scene scene = load(builder);
     EXPECT_EQ(at_corners(scene, scene.tangents),
               (std::array<glm::vec4, 3>{glm::vec4(1, 0, 0, 1), glm::vec4(0, -1, 0, -1), glm::vec4(0, 0, 1, 1)}));
@@ -313,10 +317,11 @@ TEST(GltfMorph, StandsAtItsDefaultWeights) {
 TEST(GltfMorph, ReadsASparseTargetWithoutABase) {
     GltfBuilder builder = test::one_triangle();
     const int indices = builder.view<std::uint8_t>({2}), values = builder.view<Float3>({{0, 3, 0}});
-    const int target = builder.add("accessors", {{"componentType", 5126}, {"type", "VEC3"}, {"count", 3},
-                                                 {"sparse", {{"count", 1},
-                                                             {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
-                                                             {"values", {{"bufferView", values}}}}}});
+    const json sparse = {{"count", 1},
+                         {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
+                         {"values", {{"bufferView", values}}}};
+    const int target =
+        builder.add("accessors", {{"componentType", 5126}, {"type", "VEC3"}, {"count", 3}, {"sparse", sparse}});
     primitive(builder)["targets"] = {{{"POSITION", target}}};
     builder.document["meshes"][0]["weights"] = {1};
     const Scene scene = load(builder);
@@ -359,10 +364,10 @@ TEST(GltfInstances, AreScaledTurnedMovedAndThenPlacedByTheNode) {
     const float half = float(std::numbers::sqrt2 / 2.0);
     GltfBuilder builder = with_instances(json::object());
     builder.document["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
-    instance_attributes(builder) = {
-        {"TRANSLATION", builder.float3({{0, 0, 0}, {10, 0, 0}})},
-        {"ROTATION", builder.accessor(builder.view(std::vector<Float4>{{0, 0, 0, 1}, {0, 0, half, half}}), "VEC4", 5126, 2)},
-        {"SCALE", builder.float3({{1, 1, 1}, {2, 3, 1}})}};
+    const int rotations = builder.view(std::vector<Float4>{{0, 0, 0, 1}, {0, 0, half, half}});
+    instance_attributes(builder) = {{"TRANSLATION", builder.float3({{0, 0, 0}, {10, 0, 0}})},
+                                    {"ROTATION", builder.accessor(rotations, "VEC4", 5126, 2)},
+                                    {"SCALE", builder.float3({{1, 1, 1}, {2, 3, 1}})}};
     builder.document["nodes"][0]["translation"] = {0, 0, 5};
     const Scene scene = load(builder);
     ASSERT_EQ(scene.triangles.size(), 2u) << all_warnings(scene);
@@ -377,9 +382,9 @@ TEST(GltfInstances, ReadNormalizedRotations) {
     for (const bool is_short : {false, true}) {
         SCOPED_TRACE(is_short);
         GltfBuilder builder = with_instances(json::object());
-        const int rotation =
-            is_short ? builder.accessor(builder.view(std::vector<std::array<std::int16_t, 4>>{{0, 0, 32767, 0}}), "VEC4", 5122, 1)
-                     : builder.accessor(builder.view(std::vector<std::array<std::int8_t, 4>>{{0, 0, 127, 0}}), "VEC4", 5120, 1);
+        const int view = is_short ? builder.view(std::vector<std::array<std::int16_t, 4>>{{0, 0, 32767, 0}})
+                                  : builder.view(std::vector<std::array<std::int8_t, 4>>{{0, 0, 127, 0}});
+        const int rotation = builder.accessor(view, "VEC4", is_short ? 5122 : 5120, 1);
         builder.document["accessors"][rotation]["normalized"] = true;
         instance_attributes(builder) = {{"ROTATION", rotation}};
         const Scene scene = load(builder);
@@ -436,7 +441,8 @@ TEST(HostileAttribute, IsRefusedByALineThatNamesIt) {
     GltfBuilder builder = test::one_triangle();
     add_texture(builder, 0);
     const int one = add_attribute<float, 2>(builder, "TEXCOORD_0", 5126, false, {{0, 0}});
-    expect_bad_scene(builder.gltf(), {fmt::format("accessors[{}].count (TEXCOORD_0 of meshes[0].primitives[0]) is 1", one)});
+    expect_bad_scene(builder.gltf(),
+                     {fmt::format("accessors[{}].count (TEXCOORD_0 of meshes[0].primitives[0]) is 1", one)});
     primitive(builder)["attributes"]["TEXCOORD_0"] = 0;
     expect_bad_scene(builder.gltf(), {"accessors[0].type is of 3 components", "TEXCOORD_0 needs 2"});
     primitive(builder)["attributes"].erase("TEXCOORD_0");

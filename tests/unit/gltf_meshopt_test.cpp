@@ -131,9 +131,9 @@ TEST(GltfMeshopt, CompressedMeshesAreTheMeshes) {
             const std::size_t vertices = sheet.positions.size(), indices = sheet.triangles.size();
             const Bytes encoded = std::string(mode) == "INDICES" ? encode_sequence(sheet.triangles, vertices)
                                                                  : encode_triangles(sheet.triangles, vertices);
-            const int positions = builder.accessor(
-                add_compressed_view(builder, encode_vertices(sheet.positions), vertices, 12, "ATTRIBUTES"), "VEC3", 5126,
-                vertices);
+            const int position_view =
+                add_compressed_view(builder, encode_vertices(sheet.positions), vertices, 12, "ATTRIBUTES");
+            const int positions = builder.accessor(position_view, "VEC3", 5126, vertices);
             const int index_view = add_compressed_view(builder, encoded, indices, index_size, mode);
             builder.mesh({{"attributes", {{"POSITION", positions}}},
                           {"indices", builder.accessor(index_view, "SCALAR", index_size == 2 ? 5123 : 5125, indices)}});
@@ -154,8 +154,8 @@ Scene load_filtered_normals(const Bytes& encoded, std::size_t stride, int compon
     return test::load_text(with_fallback(builder));
 }
 
-const std::vector<glm::vec3> some_normals = {glm::normalize(glm::vec3(1, 2, 3)), glm::normalize(glm::vec3(-3, 1, -0.5f)),
-                                             glm::vec3(0, 0, 1)};
+const std::vector<glm::vec3> some_normals = {glm::normalize(glm::vec3(1, 2, 3)),
+                                             glm::normalize(glm::vec3(-3, 1, -0.5f)), glm::vec3(0, 0, 1)};
 
 void expect_normals(const Scene& scene, float tolerance) {
     ASSERT_EQ(scene.normals.size(), 3u);
@@ -241,10 +241,12 @@ TEST(HostileMeshopt, IsRefusedByALineThatNamesIt) {
     expect_bad_scene(changed({{"filter", "OCTAHEDRAL"}}), {object + ".byteStride is 12", "OCTAHEDRAL needs 4 or 8"});
     expect_bad_scene(changed({{"filter", "QUATERNION"}}), {object + ".byteStride is 12", "QUATERNION needs 8"});
     expect_bad_scene(changed({{"mode", "INDICES"}}), {object + ".byteStride is 12", "2 or 4 bytes"});
-    expect_bad_scene(changed({{"mode", "TRIANGLES"}, {"byteStride", 2}, {"count", 17}}), {object + ".count is 17", "3"});
+    expect_bad_scene(changed({{"mode", "TRIANGLES"}, {"byteStride", 2}, {"count", 17}}),
+                     {object + ".count is 17", "3 indices"});
     expect_bad_scene(changed({{"mode", "INDICES"}, {"byteStride", 2}, {"count", 18}, {"filter", "EXPONENTIAL"}}),
                      {object + ".filter is EXPONENTIAL", "ATTRIBUTES"});
-    expect_bad_scene(changed({{"mode", "INDICES"}, {"byteStride", 2}, {"count", 18}}), {object + " is broken", "INDICES"});
+    expect_bad_scene(changed({{"mode", "INDICES"}, {"byteStride", 2}, {"count", 18}}),
+                     {object + " is broken", "INDICES"});
 }
 
 TEST(HostileMeshopt, EveryTruncationIsRefused) {
