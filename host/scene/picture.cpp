@@ -50,7 +50,9 @@ public:
         guarded([](PngReader& reader) { png_read_info(reader.state_.png, reader.state_.info); });
     }
 
-    Extent size() const { return {png_get_image_width(state_.png, state_.info), png_get_image_height(state_.png, state_.info)}; }
+    Extent size() const {
+        return {png_get_image_width(state_.png, state_.info), png_get_image_height(state_.png, state_.info)};
+    }
 
     std::vector<std::uint8_t> rgba() {
         guarded([](PngReader& reader) {
