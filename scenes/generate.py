@@ -7,16 +7,22 @@ import sys
 
 sys.dont_write_bytecode = True
 
-from generator import closed_form  # noqa: E402
+from generator import boxes, closed_form, studio, water  # noqa: E402
 from generator.caustic import caustic  # noqa: E402
 
 CLOSED_FORM = (closed_form.furnace, closed_form.point_plane, closed_form.spot_plane, closed_form.directional_plane,
                closed_form.square_light, closed_form.mirror, closed_form.slab, closed_form.slab_floor)
 
+# The benchmarks of the paper (Lin et al. 2020, supplementary, Table 1).
+PAPER = {"box": boxes.box_scene, "cornell": boxes.cornell, "diamond": studio.diamond, "glass": studio.glass,
+         "torus": boxes.torus, "water": water.water}
+
 
 def files():
     """{name: text} of everything this script owns."""
     result = {"caustic.gltf": caustic().text()}
+    for name, scene in PAPER.items():
+        result[f"{name}.gltf"] = scene().text()
     for scene in CLOSED_FORM:
         document, expected = scene()
         name = scene.__name__

@@ -4,8 +4,7 @@ import math
 
 from .camera import Camera
 from .document import Document
-from .shapes import join, quad, ring, sphere
-from .vector import cross, normalize, scale, sub
+from .shapes import join, quad, ring, sphere, square_towards
 
 
 def caustic():
@@ -28,10 +27,3 @@ def caustic():
                       document.emitter("lamp", (560.0, 500.0, 420.0)))
     document.add_camera(Camera((0.0, 2.9, 3.3), (0.0, 0.2, 0.0), math.radians(31.0), (4, 3)))
     return document
-
-
-def square_towards(center, target, side):
-    """Square of that side around `center` that faces `target`."""
-    normal = normalize(sub(target, center))
-    u = normalize(cross((0.0, 1.0, 0.0), normal))
-    return quad(center, scale(u, side / 2.0), scale(cross(normal, u), side / 2.0))

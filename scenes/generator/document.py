@@ -16,13 +16,14 @@ def rounded(values, digits=9):
 
 
 class Document:
-    def __init__(self, about):
+    def __init__(self, about, title=None):
         self._buffer = bytearray()
         self._views, self._accessors = [], []
         self._materials, self._meshes, self._nodes, self._lights = [], [], [], []
         self._camera = None
         self._extensions = set()
-        self._about = about
+        self._about, self._title = about, title
+        self._stored = {}  # id of a mesh -> (the mesh, its accessors): drawn twice, it is stored once
 
     # -- materials: each returns its index --------------------------------------------------------------------------
 
@@ -39,12 +40,26 @@ class Document:
         """Perfectly smooth metal; `tint` is its reflectance at normal incidence."""
         return self._material(name, tint, 1.0, 0.0, {})
 
-    def glass(self, name, ior):
-        """Smooth, clear and solid: it needs a closed mesh with fronts outward."""
-        return self._material(name, (1.0, 1.0, 1.0), 0.0, 0.0, {
-            "KHR_materials_transmission": {"transmissionFactor": 1.0},
-            "KHR_materials_ior": {"ior": ior},
-            "KHR_materials_volume": {"thicknessFactor": 1.0}})
+    def metal(self, name, tint, roughness):
+        """Metal whose microfacets have alpha = roughness^2; `tint` is its reflectance at normal incidence."""
+        return self._material(name, tint, 1.0, roughness, {})
+
+    def coated(self, name, reflectance, roughness):
+        """Diffuse surface under a clear coat of ior 1.5: glTF's default dielectric."""
+        return self._material(name, reflectance, 0.0, roughness, {})
+
+    def glass(self, name, ior, attenuation=None, dispersion=None):
+        """Smooth and solid: it needs a closed mesh with fronts outward. attenuation: (rgb that is left, after m);
+        dispersion: 20 / Abbe number."""
+        volume = {"thicknessFactor": 1.0}
+        if attenuation:
+            volume |= {"attenuationColor": rounded(attenuation[0]), "attenuationDistance": attenuation[1]}
+        extensions = {"KHR_materials_transmission": {"transmissionFactor": 1.0},
+                      "KHR_materials_ior": {"ior": ior},
+                      "KHR_materials_volume": volume}
+        if dispersion:
+            extensions["KHR_materials_dispersion"] = {"dispersion": dispersion}
+        return self._material(name, (1.0, 1.0, 1.0), 0.0, 0.0, extensions)
 
     def _material(self, name, base_color, metallic, roughness, extensions, radiance=None, double_sided=False):
         material = {"name": name, "pbrMetallicRoughness": {
@@ -66,18 +81,25 @@ class Document:
 
     # -- nodes ------------------------------------------------------------------------------------------------------
 
-    def add_mesh(self, name, mesh, material):
-        """A node that draws `mesh` (shapes.Mesh, world space)."""
-        attributes = {"POSITION": self._floats(mesh.positions, bounds=True)}
-        if mesh.normals:
-            attributes["NORMAL"] = self._floats(mesh.normals)
-        indices = [i for triangle in mesh.triangles for i in triangle]
-        assert max(indices) < 65535
-        view = self._view(struct.pack(f"<{len(indices)}H", *indices), ELEMENT_ARRAY_BUFFER)
-        self._accessors.append({"bufferView": view, "componentType": USHORT, "count": len(indices), "type": "SCALAR"})
-        self._meshes.append({"name": name, "primitives": [
-            {"attributes": attributes, "indices": len(self._accessors) - 1, "material": material}]})
-        self._nodes.append({"name": name, "mesh": len(self._meshes) - 1})
+    def add_mesh(self, name, mesh, material, places=None):
+        """A node that draws `mesh` (shapes.Mesh) in world space, or one at each of `places` (place())."""
+        self._meshes.append({"name": name, "primitives": [{**self._geometry(mesh), "material": material}]})
+        for number, transform in enumerate(places or [{}], 1):
+            numbered = name if len(places or [{}]) == 1 else f"{name} {number}"
+            self._nodes.append({"name": numbered, "mesh": len(self._meshes) - 1, **transform})
+
+    def _geometry(self, mesh):
+        if id(mesh) not in self._stored:
+            attributes = {"POSITION": self._floats(mesh.positions, bounds=True)}
+            if mesh.normals:
+                attributes["NORMAL"] = self._floats(mesh.normals)
+            indices = [i for triangle in mesh.triangles for i in triangle]
+            assert max(indices) < 65535
+            view = self._view(struct.pack(f"<{len(indices)}H", *indices), ELEMENT_ARRAY_BUFFER)
+            self._accessors.append({"bufferView": view, "componentType": USHORT, "count": len(indices),
+                                    "type": "SCALAR"})
+            self._stored[id(mesh)] = mesh, {"attributes": attributes, "indices": len(self._accessors) - 1}
+        return self._stored[id(mesh)][1]
 
     def add_camera(self, camera):
         """A perspective camera (camera.Camera)."""
@@ -87,7 +109,7 @@ class Document:
         axes = [*camera.right, 0.0, *camera.up, 0.0, *camera.back, 0.0, *camera.position, 1.0]
         self._nodes.append({"name": "camera", "camera": 0, "matrix": rounded(axes, 12)})
 
-    def add_light(self, kind, intensity, position=None, direction=None, cones=None):
+    def add_light(self, kind, intensity, position=None, direction=None, cones=None, name=None):
         """point, spot (W/sr) or directional (W/m^2); cones: inner and outer half angle in rad."""
         strength = max(intensity)
         light = {"type": kind, "color": rounded(i / strength for i in intensity), "intensity": strength}
@@ -95,7 +117,7 @@ class Document:
             light["spot"] = {"innerConeAngle": round(cones[0], 12), "outerConeAngle": round(cones[1], 12)}
         self._lights.append(light)
         self._extensions.add("KHR_lights_punctual")
-        node = {"name": kind, "extensions": {"KHR_lights_punctual": {"light": len(self._lights) - 1}}}
+        node = {"name": name or kind, "extensions": {"KHR_lights_punctual": {"light": len(self._lights) - 1}}}
         if position:
             node["translation"] = rounded(position)
         if direction:
@@ -107,7 +129,8 @@ class Document:
         document = {
             "asset": {"version": "2.0", "generator": "scenes/generate.py", "extras": {"about": self._about}},
             "extensionsUsed": sorted(self._extensions),
-            "scene": 0, "scenes": [{"nodes": list(range(len(self._nodes)))}],
+            "scene": 0, "scenes": [{**({"name": self._title} if self._title else {}),
+                                    "nodes": list(range(len(self._nodes)))}],
             "nodes": self._nodes, "cameras": [self._camera], "materials": self._materials, "meshes": self._meshes,
             "accessors": self._accessors, "bufferViews": self._views,
             "buffers": [{"byteLength": len(self._buffer), "uri":
@@ -135,6 +158,18 @@ class Document:
             accessor["max"] = [max(stored[axis::3]) for axis in range(3)]
         self._accessors.append(accessor)
         return len(self._accessors) - 1
+
+
+def place(at, yaw=0.0, pitch=0.0, size=1.0):
+    """Transform of a node: scaled by `size`, turned by `pitch` around +x, then by `yaw` around +y (degrees), moved."""
+    y, p = math.radians(yaw) / 2.0, math.radians(pitch) / 2.0
+    transform = {"translation": rounded(at)}
+    if yaw or pitch:
+        transform["rotation"] = rounded((math.cos(y) * math.sin(p), math.sin(y) * math.cos(p),
+                                         -math.sin(y) * math.sin(p), math.cos(y) * math.cos(p)), 12)
+    if size != 1.0:
+        transform["scale"] = [size] * 3
+    return transform
 
 
 def _rotation_from_minus_z(direction):

@@ -18,14 +18,23 @@ def quad(center, u, v):
     return Mesh(corners, [(0, 1, 2), (0, 2, 3)])
 
 
+def square_towards(center, target, side):
+    """Square of that side around `center` that faces `target`."""
+    normal = normalize(sub(target, center))
+    u = normalize(cross((0.0, 1.0, 0.0), normal))
+    return quad(center, scale(u, side / 2.0), scale(cross(normal, u), side / 2.0))
+
+
 def join(*meshes):
-    """One flat mesh of several."""
-    positions, triangles = [], []
+    """One mesh of several, all flat or all with normals."""
+    positions, triangles, normals = [], [], []
     for mesh in meshes:
         base = len(positions)
         positions += mesh.positions
         triangles += [tuple(base + i for i in t) for t in mesh.triangles]
-    return Mesh(positions, triangles)
+        normals += mesh.normals or []
+    assert len(normals) in (0, len(positions))
+    return Mesh(positions, triangles, normals or None)
 
 
 def flip(mesh):
