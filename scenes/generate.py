@@ -7,11 +7,12 @@ import sys
 
 sys.dont_write_bytecode = True
 
-from generator import boxes, closed_form, studio, water  # noqa: E402
+from generator import boxes, closed_form, metals, studio, water  # noqa: E402
 from generator.caustic import caustic  # noqa: E402
 
 CLOSED_FORM = (closed_form.furnace, closed_form.point_plane, closed_form.spot_plane, closed_form.directional_plane,
-               closed_form.square_light, closed_form.mirror, closed_form.slab, closed_form.slab_floor)
+               closed_form.square_light, closed_form.mirror, closed_form.slab, closed_form.slab_floor,
+               closed_form.coloured_slab, closed_form.coloured_slab_floor, metals.focus, metals.rough_metal)
 
 # The benchmarks of the paper (Lin et al. 2020, supplementary, Table 1).
 PAPER = {"box": boxes.box_scene, "cornell": boxes.cornell, "diamond": studio.diamond, "glass": studio.glass,

@@ -152,11 +152,25 @@ def mirror():
 
 
 def slab():
-    """A glass slab between two emitting walls."""
-    ior, behind, front = 1.5, (1.0, 1.0, 0.4), (0.2, 1.0, 1.6)
+    """A clear glass slab between two emitting walls."""
+    return _slab("A glass slab, face on, between two emitting walls.", None,
+                 "L = T Lb + (1 - T) Lf with T = (1 - F) / (1 + F), all reflections between the faces")
+
+
+def coloured_slab():
+    """The same of glass that absorbs."""
+    return _slab("A coloured glass slab, face on, between two emitting walls.", ((0.8, 0.5, 0.25), 0.3),
+                 "L = T Lb + R Lf with T = (1 - F)^2 a / (1 - F^2 a^2), R = F + (1 - F)^2 F a^2 / (1 - F^2 a^2), all "
+                 "reflections between the faces, a = c^(0.2 m / (0.3 m cos(theta'))) left on one way, "
+                 "c = (0.8, 0.5, 0.25), theta' the angle inside")
+
+
+def _slab(about, attenuation, formula):
+    ior, thickness, behind, front = 1.5, 0.2, (1.0, 1.0, 0.4), (0.2, 1.0, 1.6)
     camera = Camera((0.0, 0.0, 1.0), (0.0, 0.0, 0.0), math.radians(95.0), (96, 96))
-    document = Document("A glass slab, face on, between two emitting walls.")
-    document.add_mesh("slab", box((-4.0, -4.0, -0.2), (4.0, 4.0, 0.0)), document.glass("glass", ior))
+    document = Document(about)
+    document.add_mesh("slab", box((-4.0, -4.0, -thickness), (4.0, 4.0, 0.0)),
+                      document.glass("glass", ior, attenuation))
     document.add_mesh("behind", quad((0.0, 0.0, -1.0), (12.0, 0.0, 0.0), (0.0, 12.0, 0.0)),
                       document.emitter("behind", behind))
     document.add_mesh("front", quad((0.0, 0.0, 2.0), (0.0, 12.0, 0.0), (12.0, 0.0, 0.0)),
@@ -164,13 +178,12 @@ def slab():
     document.add_camera(camera)
 
     def radiance(direction):
-        transmitted = radiometry.slab_transmittance(ior, -direction[2])
-        return [transmitted * b + (1.0 - transmitted) * f for b, f in zip(behind, front)]
+        values = [radiometry.slab(ior, -direction[2], a) for a in left_of(attenuation, thickness, ior, -direction[2])]
+        return [t * b + r * f for (t, r), b, f in zip(values, behind, front)]
 
     expected = Expectation(
-        "L = T Lb + (1 - T) Lf with T = (1 - F) / (1 + F), all reflections between the faces, F the exact Fresnel "
-        "reflectance of unpolarised light at the pixel's angle, ior 1.5, Lb = (1, 1, 0.4) behind, "
-        "Lf = (0.2, 1, 1.6) on the camera's side",
+        formula + ", F the exact Fresnel reflectance of unpolarised light at the pixel's angle, ior 1.5, "
+        "Lb = (1, 1, 0.4) behind, Lf = (0.2, 1, 1.6) on the camera's side",
         camera, radiance, iterations=256, photons=1024)
     expected.add_region("centre", (32, 64), (32, 64))
     expected.add_region("left", (0, 32), (32, 64))
@@ -179,32 +192,51 @@ def slab():
 
 
 def slab_floor():
-    """Sunlight through a glass slab onto a Lambert floor.
+    """Sunlight through a clear glass slab onto a Lambert floor."""
+    return _slab_floor("Sunlight through a glass slab onto a Lambert floor.", None,
+                       "L = rho/pi E cos(60 deg) T with T = (1 - F) / (1 + F)")
+
+
+def coloured_slab_floor():
+    """The same through glass that absorbs."""
+    return _slab_floor("Sunlight through a coloured glass slab onto a Lambert floor.", ((0.8, 0.5, 0.25), 0.3),
+                       "L = rho/pi E cos(60 deg) T with T = (1 - F)^2 a / (1 - F^2 a^2), "
+                       "a = c^(0.2 m / (0.3 m cos(theta'))) left on one way, c = (0.8, 0.5, 0.25), theta' the angle inside")
+
+
+def _slab_floor(about, attenuation, formula):
+    """Light that falls at 60 degrees through a slab.
 
     The slab stands aside by what the slanted light travels: its light covers the whole floor, and what the floor gets
     back from the slab is only what its side faces return, 1e-4 of the sun.
     """
-    ior, half, rho, irradiance = 1.5, 1.0, (0.8, 0.6, 0.4), (4.0, 5.0, 6.0)
+    ior, thickness, half, rho, irradiance = 1.5, 0.2, 1.0, (0.8, 0.6, 0.4), (4.0, 5.0, 6.0)
     angle = math.radians(60.0)
     travels = (-math.sin(angle), -math.cos(angle), 0.0)
     camera = Camera((-1.0, 3.2, 0.0), (0.0, 0.0, 0.0), math.radians(20.0), (64, 64))
-    document = Document("Sunlight through a glass slab onto a Lambert floor.")
+    document = Document(about)
     document.add_mesh("floor", floor(half), document.lambert("floor", rho))
-    document.add_mesh("slab", box((2.2, 2.0, -1.2), (5.3, 2.2, 1.2)), document.glass("glass", ior))
+    document.add_mesh("slab", box((2.2, 2.0, -1.2), (5.3, 2.0 + thickness, 1.2)),
+                      document.glass("glass", ior, attenuation))
     document.add_light("directional", irradiance, direction=travels)
     document.add_camera(camera)
 
     def radiance(direction):
         on_floor(camera, direction, half)
-        transmitted = radiometry.slab_transmittance(ior, math.cos(angle))
-        return [r / math.pi * e * math.cos(angle) * transmitted for r, e in zip(rho, irradiance)]
+        left = left_of(attenuation, thickness, ior, math.cos(angle))
+        return [r / math.pi * e * math.cos(angle) * radiometry.slab(ior, math.cos(angle), a)[0]
+                for r, e, a in zip(rho, irradiance, left)]
 
     expected = Expectation(
-        "L = rho/pi E cos(60 deg) T with T = (1 - F) / (1 + F), F the exact Fresnel reflectance at 60 degrees, "
-        "ior 1.5, E = (4, 5, 6) W/m^2 across the light, rho = (0.8, 0.6, 0.4), floor y = 0",
+        formula + ", F the exact Fresnel reflectance at 60 degrees, ior 1.5, E = (4, 5, 6) W/m^2 across the light, rho = (0.8, 0.6, 0.4), floor y = 0",
         camera, radiance, iterations=192, photons=262144)
     expected.add_region("floor", (0, 64), (0, 64))
     return document, expected
+
+
+def left_of(attenuation, thickness, ior, cosine):
+    """rgb that absorption leaves of light on one way through the slab."""
+    return radiometry.absorbed_once(attenuation, thickness, ior, cosine) if attenuation else (1.0, 1.0, 1.0)
 
 
 # -- shared ----------------------------------------------------------------------------------------------------
