@@ -67,7 +67,8 @@ vec4 tangent_at(Hit hit, vec3 front_normal, bool second_uv) {
     if (area == 0.0) return vec4(0.0);
     float turn = sign(area);
     vec3 t = turn * (e1 * dv.y - e2 * dv.x);
-    // The bitangent runs up the image, against v.
+    // glTF's v runs down the image, and its bitangent up: cross(n, t) where the image is not mirrored, and there (u, v)
+    // turn clockwise.
     return vec4(t, -turn);
 }
 
