@@ -4,7 +4,8 @@ layout(binding = BIND_ENVIRONMENT_ALIAS) uniform usamplerBuffer environment_alia
 
 // Radiance that arrives from `direction`, a unit vector away from the scene.
 vec3 environment_radiance(vec3 direction) {
-    vec2 uv = vec2(0.5 + atan(direction.z, direction.x) / (2.0 * PI), acos(clamp(direction.y, -1.0, 1.0)) / PI);
+    // The polar angle by atan: devices know acos to 1e-4 only.
+    vec2 uv = vec2(0.5 + atan(direction.z, direction.x) / (2.0 * PI), atan(length(direction.xz), direction.y) / PI);
     uvec2 pixel = min(uvec2(uv * vec2(params.environment)), params.environment - 1u);
     return texelFetch(environment, int(pixel.y * params.environment.x + pixel.x)).rgb;
 }
