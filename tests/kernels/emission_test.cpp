@@ -2,10 +2,12 @@
 // it emits; all from the scene's own numbers, not from the alias table.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
 #include <random>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -13,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "kernels/probe.h"
+#include "reference/texture.h"
 #include "render/features.h"
 #include "render/flatten.h"
 #include "support/gpu.h"
@@ -194,6 +197,7 @@ TEST_F(Emission, LightsEmitTheirShareWhereAndWhereTo) {
             const glm::dvec3 expected = source.flux * (mean(total) / mean(source.flux));
             if (glm::distance(power, expected) > 2e-6 * glm::length(expected)) continue;
             known = true;
+            ASSERT_EQ(start.punctual, source.light ? 1u : 0u) << source.name;
             source.starts.push_back(start);
         }
         ASSERT_TRUE(known) << "power (" << power.x << ", " << power.y << ", " << power.z << ") W is that of no light";
@@ -288,6 +292,234 @@ TEST_F(Emission, LightsEmitTheirShareWhereAndWhereTo) {
         const glm::dvec3 axis = light.kind == PunctualLight::Kind::point ? glm::dvec3(0.6, 0.0, 0.8) : light.direction;
         expect_density("directions",
                        chi_squared(direction_bins(source, axis, low, 1.0), direction_density(low, 1.0, below)), level);
+    }
+}
+
+/// A floor under an environment of columns x rows random pixels, one of them black and one very bright.
+Scene open_scene(std::uint32_t columns, std::uint32_t rows) {
+    Scene scene;
+    add_quad(scene, {-2, -1, -2}, {0, 0, 4}, {4, 0, 0}, add_diffuse(scene, glm::vec3(0.5f)));
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+    Environment map;
+    map.size = {columns, rows};
+    for (std::uint32_t i = 0; i < columns * rows; ++i) {
+        map.radiance.emplace_back(uniform(random), uniform(random), uniform(random));
+    }
+    if (columns * rows > 2) {
+        map.radiance[columns * rows / 2] = glm::vec3(30.0f, 20.0f, 5.0f);
+        map.radiance[columns * rows / 3] = glm::vec3(0.0f);
+    }
+    scene.environment = map;
+    return scene;
+}
+
+TEST_F(Emission, AnEnvironmentEmitsItsRadianceFromEveryPixel) {
+    constexpr std::array<std::array<std::uint32_t, 2>, 3> sizes = {{{1, 1}, {16, 8}, {7, 5}}};
+    const double level = sidak(1e-4, 3 * sizes.size());
+    for (const auto& [columns, rows] : sizes) {
+        SCOPED_TRACE(fmt::format("{} x {} pixels", columns, rows));
+        const Scene scene = open_scene(columns, rows);
+        const FlatScene flat = flatten(scene);
+        ASSERT_EQ(flat.lights.size(), 1u);
+        const std::vector<glm::vec3>& radiance = scene.environment->radiance;
+        double radius = 0.0;
+        for (const auto& p : scene.positions) radius = std::max(radius, flat.frame.length(glm::distance(p, flat.frame.centre)));
+        const double area = pi * std::pow(1.001 * radius, 2);
+
+        // Sub-bins of a pixel: 2 azimuths by 2 cosines, of equal solid angle.
+        std::vector<double> shares;
+        glm::dvec3 flux(0.0);
+        double total = 0.0;
+        for (std::uint32_t i = 0; i < columns * rows; ++i) {
+            const double v = i / columns;
+            const double angle = 2.0 * pi / columns * (std::cos(pi * v / rows) - std::cos(pi * (v + 1.0) / rows));
+            flux += glm::dvec3(radiance[i]) * (angle * area);
+            shares.insert(shares.end(), 4, mean(glm::dvec3(radiance[i])) * angle / 4.0);
+            total += mean(glm::dvec3(radiance[i])) * angle;
+        }
+        for (double& share : shares) share /= total;
+
+        std::mt19937 random(8);
+        std::vector<gpu::EmitInput> inputs(samples);
+        for (auto& input : inputs) {
+            for (int c = 0; c < 4; ++c) input.bits[c] = std::uint32_t(random());
+            for (int c = 0; c < 4; ++c) input.v[c] = float(random() >> 8) / 16777216.0f;
+        }
+        std::vector<std::uint64_t> counts(shares.size()), rings(8), turns(8);
+        glm::dvec3 sum(0.0), squares(0.0);
+        std::size_t edges = 0;
+        for (const auto& start : emit(flat, inputs)) {
+            EXPECT_EQ(start.punctual, 0u);
+            const glm::dvec3 away = -glm::dvec3(start.direction);
+            ASSERT_NEAR(glm::length(away), 1.0, 1e-6);
+            const double x = columns * (0.5 + std::atan2(away.z, away.x) / (2.0 * pi));
+            const double y = rows * std::acos(std::clamp(away.y, -1.0, 1.0)) / pi;
+            const auto column = std::min<std::size_t>(columns - 1, std::size_t(x));
+            const auto row = std::min<std::size_t>(rows - 1, std::size_t(y));
+            const double top = std::cos(pi * double(row) / rows), bottom = std::cos(pi * double(row + 1) / rows);
+            const std::size_t half = std::min<std::size_t>(1, std::size_t(2.0 * (x - double(column))));
+            const std::size_t lower = away.y < 0.5 * (top + bottom) ? 1 : 0;
+            ++counts[4 * (row * columns + column) + 2 * lower + half];
+
+            // The colour of the power is that of the pixel that an eye ray would see there.
+            const glm::dvec3 power(start.power), seen(start.radiance);
+            const glm::dvec3 expected = seen * (total * area / mean(seen));
+            const bool edge = std::abs(x - std::round(x)) < 1e-5 || std::abs(y - std::round(y)) < 1e-5;
+            edges += edge ? 1 : 0;
+            if (!edge) {
+                ASSERT_EQ(start.radiance, radiance[row * columns + column]) << x << " " << y;
+                ASSERT_LT(glm::distance(power, expected), 1e-5 * glm::length(expected)) << x << " " << y;
+            }
+            sum += power;
+            squares += power * power;
+
+            // From a disc beyond the scene, across the direction, uniformly.
+            const double along = glm::dot(glm::dvec3(start.origin), away);
+            const glm::dvec3 across = glm::dvec3(start.origin) - along * away;
+            const double distance = glm::length(across) / (1.001 * radius);
+            ASSERT_GT(along, radius) << "the disc cuts the scene";
+            ASSERT_LT(distance, 1.0001);
+            ++rings[std::min<std::size_t>(7, std::size_t(8.0 * distance * distance))];
+            const glm::dvec3 side = glm::normalize(glm::cross(away, glm::dvec3(0.36, 0.48, 0.8)));
+            const double turn = std::atan2(glm::dot(across, glm::cross(away, side)), glm::dot(across, side)) / (2.0 * pi);
+            ++turns[std::min<std::size_t>(7, std::size_t(8.0 * (turn + 0.5)))];
+        }
+        EXPECT_LT(edges, samples / 1000);
+        expect_density("pixels", chi_squared(counts, shares), level);
+        expect_density("rings of the disc", chi_squared_uniform(rings), level);
+        expect_density("turns of the disc", chi_squared_uniform(turns), level);
+        for (int c = 0; c < 3; ++c) {
+            const double average = sum[c] / samples;
+            const double error = std::sqrt(std::max(0.0, squares[c] / samples - average * average) / samples);
+            EXPECT_NEAR(average, flux[c], 4.0 * error + 1e-6 * flux[c]) << "flux, channel " << c << ", standard error " << error;
+        }
+    }
+}
+
+/// An emitter of two triangles with uv (0, 0) to (1, 1) over it.
+Scene textured_emitter(const TextureImage& image, const Texture& texture, Material::Alpha alpha) {
+    Scene scene;
+    Material material;
+    material.metallic = 0.0f;
+    material.specular = 0.0f;
+    material.base_color = glm::vec3(0.0f);
+    material.emission = {2.0f, 4.0f, 6.0f};
+    material.alpha = alpha;
+    (alpha == Material::Alpha::opaque ? material.emissive_texture : material.base_color_texture) = texture;
+    scene.materials.push_back(material);
+    scene.images.push_back(image);
+    add_quad(scene, {0, 0, 0}, {1.5, 0, 0}, {0, 1, 0}, 0);
+    for (const auto& p : scene.positions) scene.uv[0].emplace_back(p.x / 1.5, 1.0 - p.y);
+    return scene;
+}
+
+TextureImage noise(std::uint32_t width, std::uint32_t height, std::uint32_t seed) {
+    TextureImage image{"noise", {width, height}, {}};
+    std::mt19937 random(seed);
+    for (std::uint32_t i = 0; i < 4 * width * height; ++i) image.rgba.push_back(std::uint8_t(random()));
+    return image;
+}
+
+/// Black but for one texel.
+TextureImage spark(std::uint32_t size, std::uint32_t x, std::uint32_t y) {
+    TextureImage image{"spark", {size, size}, std::vector<std::uint8_t>(4 * size * size)};
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
+    std::fill_n(image.rgba.begin() + 4 * (y * size + x), 3, std::uint8_t(255));
+    return image;
+}
+
+TEST_F(Emission, TexturedEmittersEmitTheirTexture) {
+    struct Case {
+        const char* name;
+        TextureImage image;
+        bool nearest;
+        Material::Alpha alpha;
+    };
+    const std::array cases = {Case{"bilinear", noise(8, 8, 1), false, Material::Alpha::opaque},
+                              Case{"nearest", noise(16, 10, 2), true, Material::Alpha::opaque},
+                              Case{"fine", noise(200, 100, 3), true, Material::Alpha::opaque},
+                              Case{"one texel of 64 x 64", spark(64, 37, 22), true, Material::Alpha::opaque},
+                              Case{"one texel of 200 x 200", spark(200, 11, 151), false, Material::Alpha::opaque},
+                              Case{"blended", noise(8, 8, 4), false, Material::Alpha::blend},
+                              Case{"masked", noise(10, 8, 5), true, Material::Alpha::mask}};
+    for (const Case& c : cases) {
+        SCOPED_TRACE(c.name);
+        Texture texture;
+        texture.nearest = c.nearest;
+        texture.wrap_s = texture.wrap_t = Texture::Wrap::clamp_to_edge;
+        const Scene scene = textured_emitter(c.image, texture, c.alpha);
+        const FlatScene flat = flatten(scene);
+        const double scale2 = flat.frame.scale * flat.frame.scale;
+
+        // The parts cover the emitter: their areas add up, and their corners are where they say.
+        double area = 0.0;
+        for (const gpu::Light& light : flat.lights) {
+            EXPECT_EQ(light.textured, 1u);
+            area += 0.5 * glm::length(glm::cross(glm::dvec3(light.e1), glm::dvec3(light.e2))) / scale2;
+            const gpu::TriangleGeometry& whole = flat.triangles[light.triangle];
+            const glm::vec3 ends[] = {light.position, light.position + light.e1, light.position + light.e2};
+            for (int k = 0; k < 3; ++k) {
+                const glm::vec3 at = whole.v0 + light.corner[k].x * whole.e1 + light.corner[k].y * whole.e2;
+                ASSERT_LT(glm::distance(at, ends[k]), 1e-6f);
+            }
+        }
+        const bool sparse = std::string(c.name).starts_with("one texel");
+        if (sparse) {
+            EXPECT_LT(area, 0.5 * 1.5) << "most of the emitter is black";
+        } else if (c.alpha != Material::Alpha::mask) {
+            EXPECT_NEAR(area, 1.5, 1e-5);
+        }
+
+        // Power by place, on a grid of cells, against the texture integrated on a finer one.
+        constexpr int cells = 8, fine = 200;  // the edges of all texels are edges of the finer one
+        std::vector<glm::dvec3> want(cells * cells, glm::dvec3(0.0));
+        const double cell_area = 1.5 / (cells * cells);
+        for (int i = 0; i < cells * fine; ++i) {
+            for (int j = 0; j < cells * fine; ++j) {
+                const glm::dvec2 uv((i + 0.5) / (cells * fine), (j + 0.5) / (cells * fine));
+                const glm::dvec4 t = reference::lookup(texture, c.image, uv, reference::Encoding::srgb);
+                glm::dvec3 share(1.0);
+                switch (c.alpha) {
+                    case Material::Alpha::opaque: share = glm::dvec3(t); break;
+                    case Material::Alpha::blend: share = glm::dvec3(t.a); break;
+                    case Material::Alpha::mask: share = glm::dvec3(t.a >= 0.5 ? 1.0 : 0.0); break;
+                }
+                want[std::size_t(j / fine) * cells + std::size_t(i / fine)] +=
+                    share * glm::dvec3(scene.materials[0].emission) * (pi * cell_area / (double(fine) * fine));
+            }
+        }
+        std::mt19937 random(9);
+        std::vector<gpu::EmitInput> inputs(samples);
+        for (auto& input : inputs) {
+            for (int k = 0; k < 4; ++k) input.bits[k] = std::uint32_t(random());
+            for (int k = 0; k < 4; ++k) input.v[k] = float(random() >> 8) / 16777216.0f;
+        }
+        std::vector<glm::dvec3> sum(want.size(), glm::dvec3(0.0)), squares = sum;
+        double heaviest = 0.0, all = 0.0;
+        for (const auto& start : emit(flat, inputs)) {
+            const glm::dvec3 p = glm::dvec3(start.origin) / flat.frame.scale + flat.frame.centre;
+            const auto cell = [&](double x) { return std::size_t(std::clamp(x * cells, 0.0, cells - 1.0)); };
+            const std::size_t at = cell(1.0 - p.y) * cells + cell(p.x / 1.5);
+            const glm::dvec3 power = glm::dvec3(start.power) / scale2;
+            sum[at] += power;
+            squares[at] += power * power;
+            heaviest = std::max(heaviest, mean(power));
+            all += mean(power) / samples;
+        }
+        double total = 0.0;
+        for (const glm::dvec3& power : want) total += mean(power);
+        for (std::size_t at = 0; at < want.size(); ++at) {
+            for (int k = 0; k < 3; ++k) {
+                const double average = sum[at][k] / samples;
+                const double error = std::sqrt(std::max(0.0, squares[at][k] / samples - average * average) / samples);
+                // 1300 means: five standard errors.
+                EXPECT_NEAR(average, want[at][k], 5.0 * error + 1e-4 * want[at][k] + 1e-6 * total)
+                    << "cell " << at % cells << ", " << at / cells << ", channel " << k << ", standard error " << error;
+            }
+        }
+        EXPECT_NEAR(all, total, 0.02 * total) << "the whole";
+        EXPECT_LT(heaviest, 80.0 * total) << "a path carries far more than the mean";
     }
 }
 

@@ -122,6 +122,17 @@ struct TextureOutput {
     vec3 clearcoat_normal;
 };
 
+struct WavelengthInput {
+    float wavelength;    // micrometres
+    float ior;
+    float cauchy;
+};
+struct WavelengthOutput {
+    float drawn;         // of path i
+    vec3 weight;
+    float index;
+};
+
 struct RayInput {
     vec3 origin;
     vec3 direction;
