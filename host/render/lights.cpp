@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <optional>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "render/textures.h"
@@ -60,19 +63,21 @@ struct WeighedLight {
 
 using Corners = std::array<glm::vec2, 3>;  // barycentrics in the whole triangle
 
+/// Of the textures of a material, where a part was that covers them whole.
+struct MeansOfImages {
+    std::optional<double> emissive, alpha;
+};
+
 /// Cuts textured emitters into parts.
 class TexturedEmitter {
 public:
-    TexturedEmitter(const Scene& scene, const Triangle& triangle, std::vector<WeighedLight>& lights)
-        : scene_(scene), triangle_(triangle), material_(scene.materials[triangle.material]), lights_(lights) {}
+    TexturedEmitter(const Scene& scene, const Triangle& triangle, std::vector<WeighedLight>& lights, MeansOfImages& means)
+        : scene_(scene), triangle_(triangle), material_(scene.materials[triangle.material]), lights_(lights), means_(means) {}
 
     /// `whole` has the flux that the factor alone would give.
     void add(const gpu::Light& whole) {
         whole_ = whole;
-        // A part whose samples are dark may yet hold a bright texel: it keeps a small chance.
-        const Corners all{{{0.0f, 0.0f}, {1.0f, 0.0f}, {0.0f, 1.0f}}};
-        floor_ = 0.02 * weigh(all).mean;
-        cut(all, 0);
+        cut({{{0.0f, 0.0f}, {1.0f, 0.0f}, {0.0f, 1.0f}}}, 0);
     }
 
 private:
@@ -112,8 +117,54 @@ private:
         return value;
     }
 
+    /// The mean of what the texels give that lookups within a part can read: 0 only where the part is dark throughout.
+    double mean_of_texels(const Corners& corners) const {
+        double value = 1.0;
+        if (material_.emissive_texture) {
+            value *= mean_of_texels(*material_.emissive_texture, corners, means_.emissive,
+                                    [](const glm::vec4& texel) { return mean(glm::dvec3(texel)); });
+        }
+        if (material_.alpha != Material::Alpha::opaque && material_.base_color_texture) {
+            value *= mean_of_texels(*material_.base_color_texture, corners, means_.alpha, [&](const glm::vec4& texel) {
+                const double alpha = material_.opacity * texel.a;
+                return material_.alpha == Material::Alpha::blend ? alpha : alpha >= material_.alpha_cutoff ? 1.0 : 0.0;
+            });
+        }
+        return value;
+    }
+
+    /// whole: the mean over the image, once it is known.
+    template <typename Value>
+    double mean_of_texels(const Texture& texture, const Corners& corners, std::optional<double>& whole, Value value) const {
+        const TextureImage& image = scene_.images[texture.image];
+        const glm::dvec2 size(image.size.width, image.size.height);
+        glm::dvec2 low(std::numeric_limits<double>::infinity()), high(-low);
+        for (const glm::vec2& corner : corners) {
+            const glm::dvec2 at = glm::dvec2(texture.matrix * uv(texture, corner) + texture.offset) * size;
+            low = glm::min(low, at);
+            high = glm::max(high, at);
+        }
+        low = glm::floor(low - 1.0);  // bilinear lookups reach half a texel further, and rounding
+        high = glm::floor(high + 1.0);
+        const bool all_columns = high.x - low.x + 1.0 >= size.x, all_rows = high.y - low.y + 1.0 >= size.y;
+        if (all_columns && all_rows && whole) return *whole;
+        if (all_columns) low.x = 0.0, high.x = size.x - 1.0;
+        if (all_rows) low.y = 0.0, high.y = size.y - 1.0;
+        double sum = 0.0;
+        for (auto y = std::int64_t(low.y); y <= std::int64_t(high.y); ++y) {
+            for (auto x = std::int64_t(low.x); x <= std::int64_t(high.x); ++x) {
+                sum += value(texel_of(image, wrapped_texel(x, image.size.width, texture.wrap_s),
+                                      wrapped_texel(y, image.size.height, texture.wrap_t), true));
+            }
+        }
+        const double result = sum / ((high.x - low.x + 1.0) * (high.y - low.y + 1.0));
+        if (all_columns && all_rows) whole = result;
+        return result;
+    }
+
     glm::vec2 uv(const Texture& texture, const glm::vec2& b) const {
         const std::vector<glm::vec2>& set = scene_.uv[texture.uv_set];
+        if (set.empty()) return glm::vec2(0.0f);
         return (1.0f - b.x - b.y) * set[triangle_.vertex[0]] + b.x * set[triangle_.vertex[1]] + b.y * set[triangle_.vertex[2]];
     }
 
@@ -148,19 +199,21 @@ private:
         part.light.textured = 1;
         const double share = std::ldexp(1.0, -2 * int(depth));  // of the triangle's area
         part.light.power = glm::vec3(glm::dvec3(whole_.power) * share);
-        part.weight = mean(glm::dvec3(part.light.power)) * std::max(weight.mean, floor_);
-        lights_.push_back(part);
+        // The few samples can miss bright texels.
+        part.weight = mean(glm::dvec3(part.light.power)) * std::max(weight.mean, 0.25 * mean_of_texels(c));
+        if (part.weight > 0.0) lights_.push_back(part);
     }
 
     const Scene& scene_;
     const Triangle& triangle_;
     const Material& material_;
     std::vector<WeighedLight>& lights_;
+    MeansOfImages& means_;
     gpu::Light whole_{};
-    double floor_ = 0.0;
 };
 
 void add_emitters(const Scene& scene, const FlatScene& flat, std::vector<WeighedLight>& lights) {
+    std::vector<MeansOfImages> means(scene.materials.size());
     for (std::size_t i = 0; i < flat.triangles.size(); ++i) {
         const gpu::SurfaceMaterial& surface = flat.materials[flat.shading[i].material & ~SHADING_FLAT];
         if (surface.emission == glm::vec3(0.0f) || (surface.flags & SURFACE_UNLIT)) continue;
@@ -175,7 +228,8 @@ void add_emitters(const Scene& scene, const FlatScene& flat, std::vector<Weighed
         const double area = 0.5 * glm::length(glm::cross(glm::dvec3(triangle.e1), glm::dvec3(triangle.e2)));
         light.power = glm::vec3(glm::dvec3(surface.emission) * (pi * area * (light.double_sided ? 2.0 : 1.0)));
         if (surface.texture[TEXTURE_EMISSIVE] != 0 || (surface.flags & (SURFACE_MASK | SURFACE_BLEND)) != 0) {
-            TexturedEmitter(scene, scene.triangles[flat.bvh.order[i]], lights).add(light);
+            const Triangle& source = scene.triangles[flat.bvh.order[i]];
+            TexturedEmitter(scene, source, lights, means[source.material]).add(light);
         } else {
             lights.push_back({light, mean(glm::dvec3(light.power))});
         }

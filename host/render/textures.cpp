@@ -62,6 +62,10 @@ glm::vec4 nearest_texel(const Scene& scene, const Texture& texture, const glm::v
     const auto index = [](float u, std::uint32_t size) { return std::min(std::uint32_t(u * float(size)), size - 1); };
     const std::uint32_t x = index(wrapped(at.x, texture.wrap_s), image.size.width);
     const std::uint32_t y = index(wrapped(at.y, texture.wrap_t), image.size.height);
+    return texel_of(image, x, y, srgb);
+}
+
+glm::vec4 texel_of(const TextureImage& image, std::uint32_t x, std::uint32_t y, bool srgb) {
     const std::uint8_t* rgba = image.rgba.data() + 4 * (std::size_t(y) * image.size.width + x);
     glm::vec4 value;
     for (int c = 0; c < 4; ++c) {
@@ -69,6 +73,14 @@ glm::vec4 nearest_texel(const Scene& scene, const Texture& texture, const glm::v
         if (srgb && c < 3) value[c] = srgb_to_linear(value[c]);
     }
     return value;
+}
+
+std::uint32_t wrapped_texel(std::int64_t i, std::uint32_t size, Texture::Wrap wrap) {
+    const std::int64_t n = size;
+    if (wrap == Texture::Wrap::clamp_to_edge) return std::uint32_t(std::clamp<std::int64_t>(i, 0, n - 1));
+    const std::int64_t period = wrap == Texture::Wrap::repeat ? n : 2 * n;
+    const std::int64_t place = (i % period + period) % period;
+    return std::uint32_t(place < n ? place : period - 1 - place);
 }
 
 bool has_alpha(const TextureImage& image) {

@@ -33,6 +33,12 @@ private:
 /// exactly.
 glm::vec4 nearest_texel(const Scene& scene, const Texture& texture, const glm::vec2& uv, bool srgb);
 
+/// Texel (x, y) of an image, linear. srgb: its colours are sRGB-encoded.
+glm::vec4 texel_of(const TextureImage& image, std::uint32_t x, std::uint32_t y, bool srgb);
+
+/// The texel of an image of `size` texels along an axis that stands at index i, which may be anywhere.
+std::uint32_t wrapped_texel(std::int64_t i, std::uint32_t size, Texture::Wrap wrap);
+
 /// True where the alpha of the image is below 1 anywhere.
 bool has_alpha(const TextureImage& image);
 
