@@ -523,6 +523,37 @@ TEST_F(Emission, TexturedEmittersEmitTheirTexture) {
     }
 }
 
+TEST_F(Emission, NoBrightTexelIsLeftOut) {
+    // The one bright texel of a dark image, wherever it is: all of it belongs to lights.
+    Texture texture;
+    texture.nearest = true;
+    std::mt19937 random(10);
+    for (const std::uint32_t size : {16u, 64u, 300u}) {
+        std::size_t missed = 0;
+        std::string first;
+        for (int trial = 0; trial < 60; ++trial) {
+            const std::uint32_t x = random() % size, y = random() % size;
+            const FlatScene flat = flatten(textured_emitter(spark(size, x, y), texture, Material::Alpha::opaque));
+            std::size_t uncovered = 0;
+            for (const glm::dvec2 inside : {glm::dvec2(0.5), {0.06, 0.09}, {0.91, 0.05}, {0.07, 0.96}, {0.95, 0.94}}) {
+                const glm::dvec2 uv = (glm::dvec2(x, y) + inside) / double(size);
+                const glm::dvec3 p = flat.frame.point({1.5 * uv.x, 1.0 - uv.y, 0.0});
+                const bool covered = std::any_of(flat.lights.begin(), flat.lights.end(), [&](const gpu::Light& light) {
+                    const glm::dvec3 e1(light.e1), e2(light.e2), n = glm::cross(e1, e2), at = p - glm::dvec3(light.position);
+                    const double b = glm::dot(glm::cross(at, e2), n) / glm::dot(n, n);
+                    const double c = glm::dot(glm::cross(e1, at), n) / glm::dot(n, n);
+                    return b >= -1e-4 && c >= -1e-4 && b + c <= 1.0 + 1e-4;
+                });
+                uncovered += covered ? 0 : 1;
+            }
+            if (uncovered == 0) continue;
+            ++missed;
+            if (first.empty()) first = fmt::format("texel ({}, {}), {} of 5 points of it, {} lights", x, y, uncovered, flat.lights.size());
+        }
+        EXPECT_EQ(missed, 0u) << "of 60 texels of " << size << " x " << size << ", the first: " << first;
+    }
+}
+
 TEST_F(Emission, CornersOfTheHypercubeGiveFiniteStarts) {
     const FlatScene flat = flatten(lights_of_every_kind());
     const float last = 1.0f - 1.0f / 16777216.0f;
