@@ -223,7 +223,8 @@ vec3 sample_lobe(uint lobe, Bsdf b, Surface surface, vec2 u, bool radiance, inou
     float alpha = lobe == LOBE_CLEARCOAT ? b.clearcoat_alpha : b.alpha;
     vec3 h = n;
     float masking = 1.0;  // G2 / G1
-    bool rough = (FEATURES & FEATURE_ROUGH) != 0u && alpha > 0.0;
+    bool straight = lobe == LOBE_TRANSMISSION && !b.thin && b.eta == 1.0;  // no facet bends it
+    bool rough = (FEATURES & FEATURE_ROUGH) != 0u && alpha > 0.0 && !straight;
     vec3 t, s;
     if (rough) {
         tangents(n, t, s);
@@ -348,7 +349,7 @@ vec3 rough_bsdf(Bsdf b, Surface surface, vec3 wo, vec3 wi, uint part) {
             float f = ggx(b.alpha, n, h) / (4.0 * wo_n * -wi_n * (1.0 + lambda + smith_lambda(b.alpha, wi_n)));
             float weight = weight_of(part, reflection_pdf(b.alpha, n, wo, h), wi_n);
             sum += tint * (facet_transmittance(b, min(1.0, dot(wo, h))) * f * weight);
-        } else {
+        } else if (b.eta != 1.0) {
             vec3 h = normalize(b.eta * wo + wi);
             if (dot(h, n) < 0.0) h = -h;
             float wo_h = dot(wo, h);
