@@ -88,9 +88,8 @@ std::vector<Case> cases(float roughness) {
         m.metallic = 1.0f, m.base_color = glm::vec3(0.0f), m.clearcoat = 1.0f, m.clearcoat_roughness = roughness;
     });
     add("clearcoat over diffuse", [=](Material& m) { m.clearcoat = 0.8f, m.clearcoat_roughness = roughness; });
-    add("clearcoat over a rougher metal", [=](Material& m) {
-        m.metallic = 1.0f, m.clearcoat = 1.0f, m.clearcoat_roughness = 0.5f * roughness;
-    });
+    add("clearcoat over a rougher metal",
+        [=](Material& m) { m.metallic = 1.0f, m.clearcoat = 1.0f, m.clearcoat_roughness = 0.5f * roughness; });
     add("smooth clearcoat over gold", [](Material& m) { m.metallic = 1.0f, m.clearcoat = 0.9f; });
     add("everything", [](Material& m) {
         m.metallic = 0.2f, m.transmission = 0.4f, m.specular = 0.9f, m.clearcoat = 0.5f, m.clearcoat_roughness = 0.3f;
@@ -122,8 +121,8 @@ double index_ratio(const Case& c) {
 
 glm::vec3 at_angle(double degrees, double azimuth = 0.4) {
     const double a = degrees * pi / 180.0;
-    return glm::vec3(glm::normalize(
-        glm::dvec3(std::sin(a) * std::cos(azimuth), std::sin(a) * std::sin(azimuth), std::cos(a))));
+    return glm::vec3(
+        glm::normalize(glm::dvec3(std::sin(a) * std::cos(azimuth), std::sin(a) * std::sin(azimuth), std::cos(a))));
 }
 
 /// Relative rounding of what a facet of glass reflects or transmits: the cosine beyond it is the root of a difference,
@@ -170,7 +169,8 @@ protected:
                                      const std::vector<gpu::BsdfInput>& inputs, bool follow) {
         const Scene scene;
         TextureTable textures(scene);
-        probe_.input(BIND_MATERIALS, std::vector{surface_of(scene, material, 1.0, textures)}, Buffer::Kind::uint_texels);
+        probe_.input(BIND_MATERIALS, std::vector{surface_of(scene, material, 1.0, textures)},
+                     Buffer::Kind::uint_texels);
         probe_.input(PROBE_VIEW, std::vector{view});
         probe_.input(PROBE_INPUT, inputs);
         probe_.output<gpu::BsdfOutput>(PROBE_OUTPUT, inputs.size());
@@ -188,7 +188,9 @@ protected:
 constexpr reference::Lobe reference_lobe[] = {reference::Lobe::diffuse, reference::Lobe::reflection,
                                               reference::Lobe::transmission, reference::Lobe::coat};
 
-std::string text(const glm::dvec3& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z); }
+std::string text(const glm::dvec3& v) {
+    return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z);
+}
 
 /// Calls check(case, angle, wo) with the case's name in every failure.
 template <typename Check>
@@ -303,7 +305,8 @@ TEST_F(BsdfLobes, WeightsAverageToTheAlbedo) {
                 << "channel " << channel << ", standard error " << error << ", heaviest sample " << heaviest;
             // The model's coats take from the base by the half vector: together they are too bright at grazing angles.
             const Material& m = c.material;
-            const bool bare = m.clearcoat == 0.0f && (m.specular == 0.0f || m.metallic == 1.0f || m.transmission == 1.0f);
+            const bool bare =
+                m.clearcoat == 0.0f && (m.specular == 0.0f || m.metallic == 1.0f || m.transmission == 1.0f);
             if (bare) {
                 EXPECT_LE(mean, 1.0 + 5.0 * error) << "more light leaves than arrives";
             }
@@ -369,7 +372,8 @@ public:
           turn_(std::atan2(peak.y, peak.x)),
           polar_{0.0, std::acos(std::min(1.0, std::abs(peak.z))), 0.5 * pi, width},
           // A facet that tilts sideways turns a grazing direction by less.
-          azimuth_{-pi, 0.0, pi, std::min(1.0, width * std::abs(peak.z) / std::max(1e-3, std::hypot(peak.x, peak.y)))} {}
+          azimuth_{-pi, 0.0, pi, std::min(1.0, width * std::abs(peak.z) / std::max(1e-3, std::hypot(peak.x, peak.y)))} {
+    }
 
     std::size_t count() const { return std::size_t(bins) * bins; }
 
@@ -456,10 +460,11 @@ struct LobeCase {
 TEST_F(BsdfLobes, DirectionsFollowTheDensityThatTheyReport) {
     constexpr std::size_t samples = 60000;
     const auto inputs = random_numbers(samples, 24);
-    const std::array lobes = {LobeCase{diffuse, "coat over diffuse"},      LobeCase{reflection, "gold"},
-                              LobeCase{reflection, "glass from inside"},   LobeCase{transmission, "glass"},
-                              LobeCase{transmission, "glass from inside"}, LobeCase{transmission, "diamond"},
-                              LobeCase{transmission, "thin glass"},        LobeCase{clearcoat, "clearcoat over diffuse"}};
+    const std::array lobes = {
+        LobeCase{diffuse, "coat over diffuse"},      LobeCase{reflection, "gold"},
+        LobeCase{reflection, "glass from inside"},   LobeCase{transmission, "glass"},
+        LobeCase{transmission, "glass from inside"}, LobeCase{transmission, "diamond"},
+        LobeCase{transmission, "thin glass"},        LobeCase{clearcoat, "clearcoat over diffuse"}};
     const double level = sidak(1e-3, lobes.size() * roughnesses.size() * angles.size());
     for_views([&](const Case& c, const glm::vec3& outgoing) {
         for (const LobeCase& which : lobes) {
@@ -483,8 +488,8 @@ TEST_F(BsdfLobes, DirectionsFollowTheDensityThatTheyReport) {
             // Refraction bends what a facet's tilt does by the difference of the indices.
             const double width = lobe == diffuse ? 1.0 : lobe == transmission && !thin ? 0.4 * alpha : alpha;
             const SphereBins bins(peak, width);
-            std::vector<double> expected = lobe == transmission && !thin ? refracted_shares(bins, alpha, ratio, wo)
-                                                                         : bins.integrals(density);
+            std::vector<double> expected =
+                lobe == transmission && !thin ? refracted_shares(bins, alpha, ratio, wo) : bins.integrals(density);
             double whole = 0.0;
             for (const double p : expected) whole += p;
             // The rule's error: 30 of the samples, where a bin has thousands.
@@ -518,7 +523,8 @@ TEST_F(BsdfLobes, DirectionsFollowTheDensityThatTheyReport) {
                 ++followed;
             }
             if (whole < 0.01) {  // nearly all is totally reflected
-                EXPECT_NEAR(double(followed), whole * samples, 5.0 * std::sqrt(whole * samples) + 1.0) << "lobe " << lobe;
+                EXPECT_NEAR(double(followed), whole * samples, 5.0 * std::sqrt(whole * samples) + 1.0)
+                    << "lobe " << lobe;
                 continue;
             }
             expect_density(fmt::format("lobe {}", std::uint32_t(lobe)), chi_squared(observed, expected), level);
@@ -548,7 +554,8 @@ TEST_F(BsdfLobes, FollowingAndGatheringMakeOneWhole) {
             glm::dvec3 light = glm::dvec3(gathered[i].gathered) * (2.0 * pi);
             if (everywhere[i].incoming.z < 0.0f) light /= eta2;
             if (followed[i].lobe != none && followed[i].lobe != diffuse && followed[i].weight != glm::vec3(0.0f)) {
-                light += glm::dvec3(followed[i].weight) * double(followed[i].followed) / double(followed[i].probability);
+                light +=
+                    glm::dvec3(followed[i].weight) * double(followed[i].followed) / double(followed[i].probability);
                 least = std::min(least, double(followed[i].followed));
                 most = std::max(most, double(followed[i].followed));
             }

@@ -148,9 +148,8 @@ protected:
         params.environment = {flat.environment_size.width, flat.environment_size.height};
         Probe probe("emission", emission_words, flat.bvh.stack, bits_of(flat.features));
         probe.input(BIND_PARAMS, std::vector{params}, Buffer::Kind::uniform);
-        const auto texels = [&](std::uint32_t binding, const auto& data, Buffer::Kind kind = Buffer::Kind::uint_texels) {
-            probe.input(binding, data, kind);
-        };
+        const auto texels = [&](std::uint32_t binding, const auto& data,
+                                Buffer::Kind kind = Buffer::Kind::uint_texels) { probe.input(binding, data, kind); };
         texels(BIND_LIGHTS, flat.lights);
         texels(BIND_SHADING, flat.shading);
         texels(BIND_MATERIALS, flat.materials);
@@ -324,7 +323,8 @@ TEST_F(Emission, AnEnvironmentEmitsItsRadianceFromEveryPixel) {
         ASSERT_EQ(flat.lights.size(), 1u);
         const std::vector<glm::vec3>& radiance = scene.environment->radiance;
         double radius = 0.0;
-        for (const auto& p : scene.positions) radius = std::max(radius, flat.frame.length(glm::distance(p, flat.frame.centre)));
+        for (const auto& p : scene.positions)
+            radius = std::max(radius, flat.frame.length(glm::distance(p, flat.frame.centre)));
         const double area = pi * std::pow(1.001 * radius, 2);
 
         // Sub-bins of a pixel: 2 azimuths by 2 cosines, of equal solid angle.
@@ -382,7 +382,8 @@ TEST_F(Emission, AnEnvironmentEmitsItsRadianceFromEveryPixel) {
             ASSERT_LT(distance, 1.0001);
             ++rings[std::min<std::size_t>(7, std::size_t(8.0 * distance * distance))];
             const glm::dvec3 side = glm::normalize(glm::cross(away, glm::dvec3(0.36, 0.48, 0.8)));
-            const double turn = std::atan2(glm::dot(across, glm::cross(away, side)), glm::dot(across, side)) / (2.0 * pi);
+            const double turn =
+                std::atan2(glm::dot(across, glm::cross(away, side)), glm::dot(across, side)) / (2.0 * pi);
             ++turns[std::min<std::size_t>(7, std::size_t(8.0 * (turn + 0.5)))];
         }
         EXPECT_LT(edges, samples / 1000);
@@ -392,7 +393,8 @@ TEST_F(Emission, AnEnvironmentEmitsItsRadianceFromEveryPixel) {
         for (int c = 0; c < 3; ++c) {
             const double average = sum[c] / samples;
             const double error = std::sqrt(std::max(0.0, squares[c] / samples - average * average) / samples);
-            EXPECT_NEAR(average, flux[c], 4.0 * error + 1e-6 * flux[c]) << "flux, channel " << c << ", standard error " << error;
+            EXPECT_NEAR(average, flux[c], 4.0 * error + 1e-6 * flux[c])
+                << "flux, channel " << c << ", standard error " << error;
         }
     }
 }
@@ -539,7 +541,8 @@ TEST_F(Emission, NoBrightTexelIsLeftOut) {
                 const glm::dvec2 uv = (glm::dvec2(x, y) + inside) / double(size);
                 const glm::dvec3 p = flat.frame.point({1.5 * uv.x, 1.0 - uv.y, 0.0});
                 const bool covered = std::any_of(flat.lights.begin(), flat.lights.end(), [&](const gpu::Light& light) {
-                    const glm::dvec3 e1(light.e1), e2(light.e2), n = glm::cross(e1, e2), at = p - glm::dvec3(light.position);
+                    const glm::dvec3 e1(light.e1), e2(light.e2), n = glm::cross(e1, e2),
+                                                                 at = p - glm::dvec3(light.position);
                     const double b = glm::dot(glm::cross(at, e2), n) / glm::dot(n, n);
                     const double c = glm::dot(glm::cross(e1, at), n) / glm::dot(n, n);
                     return b >= -1e-4 && c >= -1e-4 && b + c <= 1.0 + 1e-4;
@@ -548,7 +551,9 @@ TEST_F(Emission, NoBrightTexelIsLeftOut) {
             }
             if (uncovered == 0) continue;
             ++missed;
-            if (first.empty()) first = fmt::format("texel ({}, {}), {} of 5 points of it, {} lights", x, y, uncovered, flat.lights.size());
+            if (first.empty())
+                first =
+                    fmt::format("texel ({}, {}), {} of 5 points of it, {} lights", x, y, uncovered, flat.lights.size());
         }
         EXPECT_EQ(missed, 0u) << "of 60 texels of " << size << " x " << size << ", the first: " << first;
     }

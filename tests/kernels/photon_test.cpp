@@ -80,7 +80,8 @@ TEST_F(Photons, LieOnDiffuseSurfacesOnTheSideTheyCameFrom) {
                 if (u < -1e-5 || v < -1e-5 || u + v > 1.0 + 1e-5 || height > nearest) continue;
                 nearest = height;
                 const gpu::SurfaceMaterial& material = rig.flat.materials[rig.flat.shading[i].material & ~SHADING_FLAT];
-                diffuse = material.metallic == 0.0f && material.transmission == 0.0f && material.color != glm::vec3(0.0f);
+                diffuse =
+                    material.metallic == 0.0f && material.transmission == 0.0f && material.color != glm::vec3(0.0f);
                 facing = glm::normalize(n);
             }
             ASSERT_LT(nearest, 5e-7) << fmt::format("photon at ({}, {}, {}) is {} off any triangle", p.x, p.y, p.z,

@@ -39,7 +39,8 @@ std::uint32_t add_image(Scene& scene, std::uint32_t width, std::uint32_t height,
 /// Every texel the same.
 std::uint32_t add_plain_image(Scene& scene, const std::array<std::uint8_t, 4>& rgba) {
     scene.images.push_back({"plain", {2, 2}, {}});
-    for (int i = 0; i < 4; ++i) scene.images.back().rgba.insert(scene.images.back().rgba.end(), rgba.begin(), rgba.end());
+    for (int i = 0; i < 4; ++i)
+        scene.images.back().rgba.insert(scene.images.back().rgba.end(), rgba.begin(), rgba.end());
     return std::uint32_t(scene.images.size() - 1);
 }
 
@@ -119,7 +120,8 @@ TEST_F(Textures, LookupsAreTheReferences) {
             input.coordinates = textures[index].uv_set == 0 ? glm::vec4(uv, other) : glm::vec4(other, uv);
             input.texture = flat.materials[index].texture[slot];
             inputs.push_back(input);
-            uses.emplace_back(index, slot == TEXTURE_BASE_COLOR ? reference::Encoding::srgb : reference::Encoding::linear);
+            uses.emplace_back(index,
+                              slot == TEXTURE_BASE_COLOR ? reference::Encoding::srgb : reference::Encoding::linear);
         }
     };
     for (std::size_t index = 0; index < textures.size(); ++index) {
@@ -151,18 +153,18 @@ TEST_F(Textures, LookupsAreTheReferences) {
         if (texture.nearest) {
             // On the edge of a texel rounding decides.
             const glm::dvec2 edge = glm::abs(place - glm::round(place));
-            if ((edge.x < 2.0 * rounding && image.size.width > 1) || (edge.y < 2.0 * rounding && image.size.height > 1)) {
+            if ((edge.x < 2.0 * rounding && image.size.width > 1) ||
+                (edge.y < 2.0 * rounding && image.size.height > 1)) {
                 continue;
             }
         }
         ++compared;
         const glm::dvec4 want = reference::lookup(texture, image, uv, encoding);
         for (int c = 0; c < 4; ++c) {
-            ASSERT_NEAR(outputs[i].value[c], want[c], 3e-6 + (texture.nearest ? 0.0 : 2.0 * rounding))
-                << fmt::format("{} x {}, wraps {} {}, {}, set {}, {}, uv ({:.9g}, {:.9g}), channel {}", image.size.width,
-                               image.size.height, int(texture.wrap_s), int(texture.wrap_t),
-                               texture.nearest ? "nearest" : "bilinear", texture.uv_set, exact ? "as is" : "transformed",
-                               uv.x, uv.y, c);
+            ASSERT_NEAR(outputs[i].value[c], want[c], 3e-6 + (texture.nearest ? 0.0 : 2.0 * rounding)) << fmt::format(
+                "{} x {}, wraps {} {}, {}, set {}, {}, uv ({:.9g}, {:.9g}), channel {}", image.size.width,
+                image.size.height, int(texture.wrap_s), int(texture.wrap_t), texture.nearest ? "nearest" : "bilinear",
+                texture.uv_set, exact ? "as is" : "transformed", uv.x, uv.y, c);
         }
     }
     EXPECT_GT(compared, inputs.size() * 4 / 5);
@@ -217,7 +219,9 @@ Scene textured_sheet(std::mt19937& random, bool tangents) {
     }
     for (std::uint32_t i = 0; i < 120; ++i) {
         const glm::dvec3 at(signed_number(), signed_number(), 0.2 * signed_number());
-        const auto corner = [&] { return at + glm::dvec3(0.3f * signed_number(), 0.3f * signed_number(), 0.1f * signed_number()); };
+        const auto corner = [&] {
+            return at + glm::dvec3(0.3f * signed_number(), 0.3f * signed_number(), 0.1f * signed_number());
+        };
         add_triangle(scene, corner(), corner(), corner(), i % 6);
         for (std::size_t c = 0; c < 3; ++c) {
             glm::vec3& n = scene.normals[scene.normals.size() - 1 - c];
@@ -249,8 +253,8 @@ TEST_F(Textures, SurfacesAreTheReferences) {
             input.triangle = std::uint32_t(random() % scene.triangles.size());
             const double s = std::sqrt(uniform(random)), t = uniform(random);
             input.barycentric = glm::vec2(s * (1.0 - t), s * t);
-            input.direction = glm::vec3(glm::normalize(
-                glm::dvec3(uniform(random) - 0.5, uniform(random) - 0.5, i % 2 == 0 ? -1.0 : 1.0)));
+            input.direction = glm::vec3(
+                glm::normalize(glm::dvec3(uniform(random) - 0.5, uniform(random) - 0.5, i % 2 == 0 ? -1.0 : 1.0)));
             inputs.push_back(input);
         }
         const auto outputs = run(flat, inputs, true);
@@ -264,13 +268,14 @@ TEST_F(Textures, SurfacesAreTheReferences) {
             const Material& material = scene.materials[scene.triangles[source].material];
             // On the edge of a texel, rounding of the coordinates decides.
             bool edge = false;
-            for (const auto* texture : {&material.base_color_texture, &material.metallic_roughness_texture,
-                                        &material.normal_texture, &material.emissive_texture,
-                                        &material.transmission_texture, &material.specular_texture,
-                                        &material.specular_color_texture, &material.clearcoat_texture,
-                                        &material.clearcoat_roughness_texture, &material.clearcoat_normal_texture}) {
+            for (const auto* texture :
+                 {&material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture,
+                  &material.emissive_texture, &material.transmission_texture, &material.specular_texture,
+                  &material.specular_color_texture, &material.clearcoat_texture, &material.clearcoat_roughness_texture,
+                  &material.clearcoat_normal_texture}) {
                 const Extent size = scene.images[(*texture)->image].size;
-                const glm::dvec2 place = reference::uv_at(scene, hit, (*texture)->uv_set) * glm::dvec2(size.width, size.height);
+                const glm::dvec2 place =
+                    reference::uv_at(scene, hit, (*texture)->uv_set) * glm::dvec2(size.width, size.height);
                 const glm::dvec2 gap = glm::abs(place - glm::round(place));
                 edge = edge || ((*texture)->nearest && std::min(gap.x, gap.y) < 1e-5);
             }
@@ -322,8 +327,9 @@ TEST_F(Textures, SurfacesAreTheReferences) {
             if (seen && glm::dot(want.bsdf.normal, d) < -0.05 && glm::dot(want.bsdf.coat_normal, d) < -0.05) {
                 const auto expect_normal = [&](const char* name, const glm::vec3& got, const glm::dvec3& wanted) {
                     EXPECT_LT(glm::distance(glm::dvec3(got), wanted), rounding)
-                        << line << ": " << name << fmt::format(" ({:.6f}, {:.6f}, {:.6f}), wanted ({:.6f}, {:.6f}, {:.6f})",
-                                                               got.x, got.y, got.z, wanted.x, wanted.y, wanted.z)
+                        << line << ": " << name
+                        << fmt::format(" ({:.6f}, {:.6f}, {:.6f}), wanted ({:.6f}, {:.6f}, {:.6f})", got.x, got.y,
+                                       got.z, wanted.x, wanted.y, wanted.z)
                         << ", condition " << condition;
                 };
                 expect_normal("normal", out.normal, want.bsdf.normal);
@@ -370,12 +376,12 @@ TEST_F(Textures, ANormalMapBendsTowardsTheTopOfItsImage) {
                 inputs[i].barycentric = {0.3f, 0.3f};
                 inputs[i].direction = {0.0f, 0.0f, back ? 1.0f : -1.0f};
             }
-            const glm::dvec3 n = glm::normalize(0.6 * glm::dvec3(view.right) + (2.0 * 230.0 / 255.0 - 1.0) *
-                                                (glm::dvec3(view.up) + glm::dvec3(0, 0, 1)));
+            const glm::dvec3 n =
+                glm::normalize(0.6 * glm::dvec3(view.right) +
+                               (2.0 * 230.0 / 255.0 - 1.0) * (glm::dvec3(view.up) + glm::dvec3(0, 0, 1)));
             for (const auto& out : run(flat, inputs, true)) {
-                EXPECT_LT(glm::distance(glm::dvec3(out.normal), back ? -n : n), 1e-5)
-                    << fmt::format("({}, {}, {}), expected ({}, {}, {})", out.normal.x, out.normal.y, out.normal.z, n.x,
-                                   n.y, n.z);
+                EXPECT_LT(glm::distance(glm::dvec3(out.normal), back ? -n : n), 1e-5) << fmt::format(
+                    "({}, {}, {}), expected ({}, {}, {})", out.normal.x, out.normal.y, out.normal.z, n.x, n.y, n.z);
             }
         }
     }

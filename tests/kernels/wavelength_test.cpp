@@ -27,11 +27,9 @@ protected:
         probe_.input(BIND_PARAMS, std::vector{params}, Buffer::Kind::uniform);
         probe_.input(PROBE_INPUT, inputs);
         probe_.output<gpu::WavelengthOutput>(PROBE_OUTPUT, inputs.size());
-        probe_.run(inputs.size(), {.iteration = 3,
-                                   .round = 0,
-                                   .last_round = 0,
-                                   .offset = stream,
-                                   .count = std::uint32_t(inputs.size())});
+        probe_.run(
+            inputs.size(),
+            {.iteration = 3, .round = 0, .last_round = 0, .offset = stream, .count = std::uint32_t(inputs.size())});
         return probe_.result<gpu::WavelengthOutput>(PROBE_OUTPUT, inputs.size());
     }
 
