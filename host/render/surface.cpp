@@ -28,6 +28,12 @@ bool partly_there(const Scene& scene, const Material& material) {
     return material.opacity < 1.0f || image || vertices;
 }
 
+/// A metal that is black all over: what exporters leave under a lamp. Schlick's white edge would have rays trace it, and
+/// every photon weighed, for nothing that anybody means: it takes all light in.
+bool is_black_metal(const Material& m) {
+    return m.metallic == 1.0f && m.base_color == black && !m.metallic_roughness_texture;
+}
+
 struct NamedTexture {
     const char* name;
     const std::optional<Texture>* texture;
@@ -60,7 +66,7 @@ SurfaceTraits traits_of(const Scene& scene, const Material& m) {
     if (m.unlit) return t;
     const bool dielectric = m.metallic < 1.0f || m.metallic_roughness_texture;
     const bool opaque = m.transmission < 1.0f || m.transmission_texture;
-    t.metal = m.metallic > 0.0f && m.base_color != black;
+    t.metal = m.metallic > 0.0f && !is_black_metal(m);
     t.diffuse = dielectric && opaque && m.base_color != black;
     t.coat = dielectric && opaque && m.specular > 0.0f;
     t.glass = is_glass(m);
@@ -80,10 +86,10 @@ gpu::SurfaceMaterial surface_of(const Scene& scene, const Material& m, double sc
     surface.color = m.base_color;
     surface.emission = m.emission;
     surface.ior = m.ior == 0.0f ? infinite_ior : m.ior;
-    surface.metallic = m.metallic;
+    surface.metallic = is_black_metal(m) ? 0.0f : m.metallic;
     surface.roughness = m.roughness;
     surface.transmission = m.transmission;
-    surface.specular = m.specular;
+    surface.specular = is_black_metal(m) ? 0.0f : m.specular;
     surface.specular_color = m.specular_color;
     surface.opacity = m.opacity;
     if (traits.absorbs) {

@@ -110,7 +110,8 @@ void main() {
             continue;
         }
         if (shadow) break;
-        if ((FEATURES & FEATURE_AOVS) != 0u && depth == 0u) {
+        if ((FEATURES & FEATURE_AOVS) != 0u && (memory & PATH_SEEN) == 0u) {
+            memory |= PATH_SEEN;
             Aovs sum = aovs[pixel];
             aovs[pixel] = Aovs(sum.albedo + material.color, sum.normal + surface.normal,
                                sum.depth + distance * dot(direction, params.forward), sum.hits + 1u);

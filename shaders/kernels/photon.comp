@@ -82,6 +82,22 @@ void main() {
             SurfaceMaterial material = material_at(hit, state.direction, surface);
             if ((FEATURES & FEATURE_VOLUME) != 0u) state.power *= transmittance(state.memory, surface, hit.t);
             vec4 u = random4(params.seed, launch.iteration, STREAM_PHOTON, path, bounces + 1u);
+            float ior = index_for_path(material, STREAM_PHOTON, path, state.memory, state.power);
+            Bsdf bsdf = bsdf_of(material, ior, surface.front);
+            if ((FEATURES & FEATURE_UNLIT) != 0u && has(material, SURFACE_UNLIT)) bsdf = black();
+            // What is black reflects no photon to any eye. Where a surface is partly there the photon counts in full: it
+            // tells how much light arrives, and the eye path has asked for the surface.
+            if (gathers_light(bsdf)) {
+                if (state.stored < params.photon_capacity) {
+                    photons[slot + state.stored] = Photon(surface.position, pack_direction(surface.geometric));
+                    vec3 power = state.power;
+                    if (PUNCTUAL_ON_ROUGH && (state.memory & (PATH_STRAIGHT | PATH_DIRECT)) == PATH_STRAIGHT) {
+                        power.r = uintBitsToFloat(floatBitsToUint(power.r) | 0x80000000u);
+                    }
+                    photon_flux[slot + state.stored] = PhotonFlux(power, pack_direction(-state.direction));
+                }
+                ++state.stored;
+            }
             bool there = true;
             if ((FEATURES & FEATURE_ALPHA) != 0u) {
                 float coverage = coverage_of(material);
@@ -89,23 +105,9 @@ void main() {
                 u.w /= coverage;  // uniform again where the surface is there
             }
             if (there) {
-                float ior = index_for_path(material, STREAM_PHOTON, path, state.memory, state.power);
-                Bsdf bsdf = bsdf_of(material, ior, surface.front);
-                if ((FEATURES & FEATURE_UNLIT) != 0u && has(material, SURFACE_UNLIT)) bsdf = black();
-                vec4 lobes = lobes_of(bsdf, surface, -state.direction);
-                if (gathers_light(bsdf)) {  // what is black reflects no photon to any eye
-                    if (state.stored < params.photon_capacity) {
-                        photons[slot + state.stored] = Photon(surface.position, pack_direction(surface.geometric));
-                        vec3 power = state.power;
-                        if (PUNCTUAL_ON_ROUGH && (state.memory & (PATH_STRAIGHT | PATH_DIRECT)) == PATH_STRAIGHT) {
-                            power.r = uintBitsToFloat(floatBitsToUint(power.r) | 0x80000000u);
-                        }
-                        photon_flux[slot + state.stored] = PhotonFlux(power, pack_direction(-state.direction));
-                    }
-                    ++state.stored;
-                }
                 // In scenes without gloss no surface needs two numbers for its direction and a third for its lobe.
                 float inverse_probability;
+                vec4 lobes = lobes_of(bsdf, surface, -state.direction);
                 uint lobe = choose_lobe(lobes, (FEATURES & FEATURE_GLOSS) != 0u ? u.w : u.x, inverse_probability);
                 alive = lobe != LOBE_NONE;
                 if (alive) {

@@ -226,11 +226,12 @@ struct HitSurface {
 #define HIT_MASK 3u
 
 // What a path in flight remembers, in one word: bounces | flags | material of the solid it is in.
-#define PATH_BOUNCES 0xfffu
-#define PATH_STRAIGHT 0x1000u   // it has met nothing but delta lobes since it left the eye or a punctual light
-#define PATH_DISPERSED 0x2000u  // its wavelength is drawn
-#define PATH_DIRECT 0x4000u     // a photon that has met nothing yet since it left a punctual light
-#define PATH_SHADOW 0x4000u     // an eye path whose last ray asks whether a punctual light is seen
+#define PATH_BOUNCES 0x7ffu
+#define PATH_STRAIGHT 0x800u    // it has met nothing but delta lobes since it left the eye or a punctual light
+#define PATH_DISPERSED 0x1000u  // its wavelength is drawn
+#define PATH_DIRECT 0x2000u     // a photon that has met nothing yet since it left a punctual light
+#define PATH_SHADOW 0x2000u     // an eye path whose last ray asks whether a punctual light is seen
+#define PATH_SEEN 0x4000u       // an eye path that has met a surface that is there
 #define PATH_MEDIUM_SHIFT 15u
 #define PATH_NO_MEDIUM 0x1ffffu // also the largest number of materials
 

@@ -17,7 +17,7 @@
 namespace vkcppm::test {
 namespace {
 
-constexpr std::uint32_t side = 48, block = 12, seeds = 4;
+constexpr std::uint32_t side = 32, block = 8, seeds = 4;
 constexpr double level = 0.001;        // of the whole picture, Sidak-corrected over blocks and channels
 constexpr double kernel_bias = 0.012;  // relative, of a block: bias of the photon estimate at edges and corners
 
@@ -177,11 +177,11 @@ TEST_P(Materials, AgreeWithPathTracing) {
     Settings settings;
     GetParam().change(scene, settings);
     settings.size = Extent{side, side};
-    settings.iterations = 64;
-    settings.photons = 16384;
+    settings.iterations = 32;
+    settings.photons = 8192;
     reference::PathTracerSettings reference;
     reference.size = Extent{side, side};
-    reference.samples = 192;
+    reference.samples = 128;
     reference.aperture = settings.aperture;
     reference.focus_distance = settings.focus_distance.value_or(1.0);
     for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
