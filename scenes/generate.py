@@ -7,7 +7,7 @@ import sys
 
 sys.dont_write_bytecode = True
 
-from generator import boxes, closed_form, metals, studio, water  # noqa: E402
+from generator import architecture, boxes, closed_form, interiors, metals, studio, water  # noqa: E402
 from generator.caustic import caustic  # noqa: E402
 
 CLOSED_FORM = (closed_form.furnace, closed_form.point_plane, closed_form.spot_plane, closed_form.directional_plane,
@@ -15,8 +15,9 @@ CLOSED_FORM = (closed_form.furnace, closed_form.point_plane, closed_form.spot_pl
                closed_form.coloured_slab, closed_form.coloured_slab_floor, metals.focus, metals.rough_metal)
 
 # The benchmarks of the paper (Lin et al. 2020, supplementary, Table 1).
-PAPER = {"box": boxes.box_scene, "cornell": boxes.cornell, "diamond": studio.diamond, "glass": studio.glass,
-         "torus": boxes.torus, "water": water.water}
+PAPER = {"box": boxes.box_scene, "clocks": studio.clocks, "conference": interiors.conference, "cornell": boxes.cornell,
+         "diamond": studio.diamond, "dining": interiors.dining, "glass": studio.glass,
+         "sibenik": architecture.sibenik, "sponza": architecture.sponza, "torus": boxes.torus, "water": water.water}
 
 
 def files():
