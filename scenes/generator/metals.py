@@ -67,12 +67,12 @@ def rough_metal():
     """Two plates of rough metal as the floor of a closed room whose walls and ceiling emit and do not reflect."""
     base, emitted, roughness = (0.9, 0.5, 0.2), (0.6, 0.8, 1.0), (0.5, 0.8)
     camera = Camera((0.0, 1.0, 1.6), (0.0, 0.0, 0.0), math.radians(46.0), (64, 64))
-    walls = box((-3.0, 0.0, -3.0), (3.0, 3.0, 3.0))
+    walls = box((-1.4, 0.0, -2.4), (1.4, 1.6, 1.8))
     walls = walls._replace(triangles=[t for t in walls.triangles if any(walls.positions[i][1] > 0.0 for i in t)])
     document = Document("Two plates of rough metal below uniformly emitting walls.")
     document.add_mesh("walls", flip(walls), document.emitter("walls", emitted))
-    for name, side, rough in (("left plate", -1.5, roughness[0]), ("right plate", 1.5, roughness[1])):
-        document.add_mesh(name, quad((side, 0.0, 0.0), (0.0, 0.0, 3.0), (1.5, 0.0, 0.0)),
+    for name, side, rough in (("left plate", -0.7, roughness[0]), ("right plate", 0.7, roughness[1])):
+        document.add_mesh(name, quad((side, 0.0, -0.3), (0.0, 0.0, 2.1), (0.7, 0.0, 0.0)),
                           document.metal(name, base, rough))
     document.add_camera(camera)
     albedo = [interpolated(lambda c, alpha=rough * rough: radiometry.rough_metal_albedo(alpha, c), 0.1, 0.9, 10)
@@ -86,9 +86,9 @@ def rough_metal():
         "L = Le (b A + (1 - b) B), A the mean of G2/G1 and B that of G2/G1 (1 - |wo.h|)^5 over the normals h of GGX that "
         "are visible from the pixel (height-correlated Smith, single scattering), integrated in double; alpha 0.25 left "
         "and 0.64 right, b = (0.9, 0.5, 0.2), Le = (0.6, 0.8, 1)",
-        camera, radiance, iterations=256, photons=65536)
-    for name, x in (("alpha 0.25", (4, 28)), ("alpha 0.64", (36, 60))):
-        for height, y in (("grazing", (4, 14)), ("slanted", (24, 40)), ("steep", (50, 62))):
+        camera, radiance, iterations=512, photons=65536)
+    for name, x in (("alpha 0.25", (3, 30)), ("alpha 0.64", (34, 61))):
+        for height, y in (("grazing", (11, 18)), ("slanted", (22, 42)), ("steep", (44, 63))):
             expected.add_region(f"{name}, {height}", x, y)
     return document, expected
 
