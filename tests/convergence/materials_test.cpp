@@ -6,20 +6,13 @@
 #include <functional>
 #include <string>
 
-#include <boost/math/distributions/students_t.hpp>
-#include <fmt/format.h>
+#include <gtest/gtest.h>
 
-#include "reference/path_tracer.h"
-#include "support/rig.h"
+#include "support/blocks.h"
 #include "support/shapes.h"
-#include "support/statistics.h"
 
 namespace vkcppm::test {
 namespace {
-
-constexpr std::uint32_t side = 32, block = 8, seeds = 4;
-constexpr double level = 0.001;        // of the whole picture, Sidak-corrected over blocks and channels
-constexpr double kernel_bias = 0.012;  // relative, of a block: bias of the photon estimate at edges and corners
 
 struct Case {
     const char* name;
@@ -163,60 +156,15 @@ const Case cases[] = {
 
 class Materials : public testing::TestWithParam<Case> {};
 
-glm::dvec3 block_mean(const Image& image, std::uint32_t bx, std::uint32_t by) {
-    glm::dvec3 sum(0.0);
-    for (std::uint32_t y = by * block; y < (by + 1) * block; ++y) {
-        for (std::uint32_t x = bx * block; x < (bx + 1) * block; ++x) sum += glm::dvec3(image.at(x, y));
-    }
-    return sum / double(block * block);
-}
-
 TEST_P(Materials, AgreeWithPathTracing) {
-    std::vector<Image> photons, paths;
     Scene scene = make_room();
     Settings settings;
     GetParam().change(scene, settings);
-    settings.size = Extent{side, side};
+    settings.size = Extent{32, 32};
     settings.iterations = 32;
     settings.photons = 8192;
-    reference::PathTracerSettings reference;
-    reference.size = Extent{side, side};
-    reference.samples = 128;
-    reference.aperture = settings.aperture;
-    reference.focus_distance = settings.focus_distance.value_or(1.0);
-    for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
-        settings.seed = reference.seed = seed;
-        Rig run(scene, settings, plain_device());
-        run.integrator.run(settings.iterations);
-        photons.push_back(run.integrator.resolve());
-        paths.push_back(reference::path_trace(scene, reference).mean);
-    }
-    const auto blocks = side / block;
-    const double each = sidak(level, 3 * blocks * blocks);
-    std::string table;
-    bool failed = false;
-    for (std::uint32_t by = 0; by < blocks; ++by) {
-        for (std::uint32_t bx = 0; bx < blocks; ++bx) {
-            for (int c = 0; c < 3; ++c) {
-                const auto moments = [&](const std::vector<Image>& images) {
-                    double mean = 0.0, square = 0.0;
-                    for (const Image& image : images) mean += block_mean(image, bx, by)[c] / seeds;
-                    for (const Image& image : images) square += std::pow(block_mean(image, bx, by)[c] - mean, 2);
-                    return std::pair(mean, square / (seeds - 1) / seeds);  // mean, its variance
-                };
-                const auto [m1, v1] = moments(photons);
-                const auto [m2, v2] = moments(paths);
-                const double difference = std::max(0.0, std::abs(m1 - m2) - kernel_bias * m2);
-                const double freedom = (v1 + v2) * (v1 + v2) / ((v1 * v1 + v2 * v2) / (seeds - 1));
-                const double p = difference == 0.0 ? 1.0 : 2.0 * cdf(complement(boost::math::students_t(freedom), difference / std::sqrt(v1 + v2)));
-                failed = failed || !(p > each);
-                table += fmt::format(" {}{:.3f}({:.3f})", p > each ? "" : "!", m1 / m2, std::sqrt(v1 + v2) / m2);
-            }
-        }
-        table += "\n";
-    }
-    EXPECT_FALSE(failed) << "photons over paths of blocks and channels, (standard error), ! where they disagree:\n" << table;
-    RecordProperty("ratios", table);
+    const BlockComparison blocks = compare_blocks(render_two_ways(scene, settings, 128, 4), {.side = 8, .bias = 0.012});
+    EXPECT_EQ(blocks.differing, 0u) << "photons over paths, a block and channel:\n" << blocks.table;
 }
 
 INSTANTIATE_TEST_SUITE_P(Features, Materials, testing::ValuesIn(cases), [](const auto& info) { return std::string(info.param.name); });

@@ -1,0 +1,100 @@
+#include "support/blocks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <boost/math/distributions/students_t.hpp>
+#include <fmt/format.h>
+
+#include "support/rig.h"
+#include "support/statistics.h"
+
+namespace vkcppm::test {
+namespace {
+
+/// Mean of a channel over a block of every picture: mean and variance of that mean.
+std::pair<double, double> moments(const Pictures& pictures, std::uint32_t x0, std::uint32_t y0, std::uint32_t side, int channel) {
+    std::vector<double> means;
+    for (const Image& image : pictures) {
+        double sum = 0.0;
+        for (std::uint32_t y = y0; y < y0 + side; ++y) {
+            for (std::uint32_t x = x0; x < x0 + side; ++x) sum += image.at(x, y)[channel];
+        }
+        means.push_back(sum / (double(side) * side));
+    }
+    const double n = double(means.size());
+    double mean = 0.0, square = 0.0;
+    for (const double m : means) mean += m / n;
+    for (const double m : means) square += (m - mean) * (m - mean);
+    return {mean, square / (n - 1.0) / n};
+}
+
+/// Welch's test, two-sided, of a difference beyond `allowed`.
+double p_value(double difference, double allowed, double v1, double v2, double n) {
+    const double beyond = std::abs(difference) - allowed;
+    if (beyond <= 0.0) return 1.0;
+    if (v1 + v2 == 0.0) return 0.0;
+    const double freedom = (v1 + v2) * (v1 + v2) / ((v1 * v1 + v2 * v2) / (n - 1.0));
+    return 2.0 * cdf(complement(boost::math::students_t(freedom), beyond / std::sqrt(v1 + v2)));
+}
+
+Image render_photons(const Scene& scene, const Settings& settings) {
+    Rig run(scene, settings, plain_device());
+    run.integrator.run(settings.iterations);
+    return run.integrator.resolve();
+}
+
+}  // namespace
+
+TwoWays render_two_ways(const Scene& scene, Settings settings, std::uint32_t samples, std::uint32_t seeds) {
+    reference::PathTracerSettings reference;
+    reference.size = *settings.size;
+    reference.samples = samples;
+    reference.max_depth = settings.max_depth;
+    reference.aperture = settings.aperture;
+    reference.focus_distance = settings.focus_distance.value_or(1.0);
+    TwoWays pictures;
+    for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
+        settings.seed = reference.seed = seed;
+        pictures.photons.push_back(render_photons(scene, settings));
+        pictures.paths.push_back(reference::path_trace(scene, reference).mean);
+    }
+    return pictures;
+}
+
+TwoWays render_two_ways_extrapolated(const Scene& scene, Settings settings, std::uint32_t samples, std::uint32_t seeds) {
+    TwoWays pictures = render_two_ways(scene, settings, samples, seeds);
+    settings.photons *= 4;
+    for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
+        settings.seed = seeds + seed;
+        const Image fine = render_photons(scene, settings);
+        Image& image = pictures.photons[seed - 1];
+        for (std::size_t i = 0; i < image.rgb.size(); ++i) image.rgb[i] = 2.0f * fine.rgb[i] - image.rgb[i];
+    }
+    return pictures;
+}
+
+BlockComparison compare_blocks(const TwoWays& pictures, const BlockSettings& settings) {
+    const Extent size = pictures.photons.front().extent;
+    const std::uint32_t columns = size.width / settings.side, rows = size.height / settings.side;
+    const double each = sidak(settings.level, std::size_t(3) * columns * rows);
+    BlockComparison result;
+    for (std::uint32_t row = 0; row < rows; ++row) {
+        for (std::uint32_t column = 0; column < columns; ++column) {
+            for (int c = 0; c < 3; ++c) {
+                const auto [m1, v1] = moments(pictures.photons, column * settings.side, row * settings.side, settings.side, c);
+                const auto [m2, v2] = moments(pictures.paths, column * settings.side, row * settings.side, settings.side, c);
+                const bool counts = std::sqrt(v2) <= settings.noise * m2;
+                const bool differs = counts && p_value(m1 - m2, settings.bias * m2, v1, v2, double(pictures.paths.size())) < each;
+                result.counted += counts ? 1 : 0;
+                result.differing += differs ? 1 : 0;
+                result.table += fmt::format(" {}{:.3f}({:.3f})", differs ? "!" : counts ? "" : "?", m1 / m2, std::sqrt(v1 + v2) / m2);
+            }
+        }
+        result.table += "\n";
+    }
+    return result;
+}
+
+}  // namespace vkcppm::test
