@@ -6,7 +6,7 @@ from .camera import Camera
 from .document import Document, place
 from .interiors import pierced
 from .shapes import box, join, quad
-from .solids import arc, arched_wall, extrude, lathe, mapped, moved, ribbon, room
+from .solids import arc, arched_wall, extrude, lathe, mapped, moved, ribbon
 
 BAY = 3.5  # m between columns
 
@@ -38,8 +38,8 @@ def sibenik():
     floor(document, aisle, length, ((0.55, 0.5, 0.44), (0.26, 0.12, 0.09)))
     document.add_mesh("west wall", quad((0.0, 5.8, length), (0.0, 5.8, 0.0), (aisle + 0.4, 0.0, 0.0)), stone)
     lights = [(-2.0, -1.1, 2.6, 6.2), (-0.45, 0.45, 2.6, 7.4), (1.1, 2.0, 2.6, 6.2)]
-    document.add_mesh("east wall", moved(pierced((0.0, 0.0), aisle + 0.4, 11.6, lights, 0.4), (0.0, 0.0, -length), -90.0),
-                      stone)
+    document.add_mesh("east wall", moved(pierced((0.0, 0.0), aisle + 0.4, 11.6, lights, 0.4),
+                                         (0.0, 0.0, -length), -90.0), stone)
     panes(document, lights, -length - 0.3)
     document.add_mesh("altar", join(box((-1.0, 0.3, -length + 0.7), (1.0, 1.25, -length + 1.3)),
                                     box((-2.2, 0.001, -length + 0.1), (2.2, 0.3, -length + 2.4)),
@@ -105,8 +105,8 @@ def panes(document, lights, z):
 
 def sponza():
     """A court under the open sky between two storeys of arches, with drapes."""
-    document = Document("A court between two storeys of arches under the sun and a strip of sky. Stands in for the model "
-                        "of Sponza's atrium.", "Sponza (stand-in)")
+    document = Document("A court between two storeys of arches under the sun and a strip of sky. Stands in for the "
+                        "model of Sponza's atrium.", "Sponza (stand-in)")
     half_x, bays, deep = BAY, 5, 2.6
     half_z = bays * BAY / 2.0
     stone = document.lambert("sandstone", (0.68, 0.58, 0.45))
@@ -116,13 +116,14 @@ def sponza():
     for level, column, top in ((0.0, 2.6, 4.6), (5.0, 1.7, 3.6)):
         ends = [place((x, level, -half_z)) for x in (-BAY / 2.0, BAY / 2.0)]
         corners = [place((side * half_x, level, z)) for side in (-1, 1) for z in rows]
-        arcade(document, stone, [place((side * half_x, level, z), yaw=90.0) for side in (-1, 1) for z in centers] + ends,
-               corners + [place((0.0, level, -half_z))], column, top, 2.6, 0.45)
+        sides = [place((side * half_x, level, z), yaw=90.0) for side in (-1, 1) for z in centers]
+        arcade(document, stone, sides + ends, corners + [place((0.0, level, -half_z))], column, top, 2.6, 0.45)
     outer_x, outer_z = half_x + deep, half_z + deep
-    slabs = [box((side * half_x - 0.35 if side > 0 else -outer_x, y, -outer_z),
-                 (outer_x if side > 0 else -half_x + 0.35, y + t, half_z)) for side in (-1, 1)
-             for y, t in ((4.601, 0.398), (8.601, 0.3))]
-    slabs += [box((-half_x + 0.351, y, -outer_z), (half_x - 0.351, y + t, -half_z + 0.35)) for y, t in ((4.601, 0.398), (8.601, 0.3))]
+    slabs = []
+    for low, high in ((4.601, 4.999), (8.601, 8.901)):
+        slabs += [box((-outer_x, low, -outer_z), (-half_x + 0.35, high, half_z)),
+                  box((half_x - 0.35, low, -outer_z), (outer_x, high, half_z)),
+                  box((-half_x + 0.351, low, -outer_z), (half_x - 0.351, high, -half_z + 0.35))]
     document.add_mesh("galleries", join(*slabs), stone)
     doors = [(z - 0.55, z + 0.55, 0.0, 2.3) for z in centers[::2]]
     document.add_mesh("outer walls", join(
@@ -133,16 +134,17 @@ def sponza():
     floor(document, outer_x, outer_z, ((0.5, 0.44, 0.36), (0.42, 0.35, 0.28)))
     rail = join(box((-BAY / 2.0 + 0.35, 0.62, -0.1), (BAY / 2.0 - 0.35, 0.74, 0.1)),
                 *[box((-1.25 + 0.25 * i, 0.0, -0.05), (-1.15 + 0.25 * i, 0.619, 0.05)) for i in range(11)])
-    document.add_mesh("balustrade", rail, stone, [place((side * half_x, 5.0, z), yaw=90.0) for side in (-1, 1) for z in centers]
-                      + [place((x, 5.0, -half_z)) for x in (-BAY / 2.0, BAY / 2.0)])
+    document.add_mesh("balustrade", rail, stone,
+                      [place((side * half_x, 5.0, z), yaw=90.0) for side in (-1, 1) for z in centers] +
+                      [place((x, 5.0, -half_z)) for x in (-BAY / 2.0, BAY / 2.0)])
     cloth = drape(2.0, 3.1)
     for name, tint, spots in (("red drape", (0.6, 0.04, 0.04), ((-1, 3), (1, 2), (-1, 0))),
                               ("blue drape", (0.05, 0.1, 0.42), ((-1, 2), (1, 1))),
                               ("green drape", (0.08, 0.32, 0.07), ((-1, 1), (1, 3), (1, 0)))):
         document.add_mesh(name, cloth, document.lambert(name, tint),
                           [place((side * (half_x + 0.05), 0.75, centers[bay]), yaw=90.0) for side, bay in spots])
-    vase = lathe([(0.0, 0.0), (0.22, 0.0), (0.24, 0.05), (0.2, 0.1), (0.34, 0.4), (0.36, 0.6), (0.26, 0.85), (0.31, 0.95),
-                  (0.28, 0.95), (0.23, 0.85), (0.2, 0.7), (0.0, 0.7)], 24)
+    vase = lathe([(0.0, 0.0), (0.22, 0.0), (0.24, 0.05), (0.2, 0.1), (0.34, 0.4), (0.36, 0.6), (0.26, 0.85),
+                  (0.31, 0.95), (0.28, 0.95), (0.23, 0.85), (0.2, 0.7), (0.0, 0.7)], 24)
     document.add_mesh("vase", vase, document.lambert("terracotta", (0.55, 0.24, 0.13)),
                       [place((side * (half_x - 0.95), 0.001, z)) for side in (-1, 1) for z in rows[1:-1]])
     document.add_light("directional", (11.5, 10.0, 7.9), direction=(0.42, -1.0, -0.3), name="sun")

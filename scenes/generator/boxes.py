@@ -5,7 +5,7 @@ import math
 from .camera import Camera
 from .document import Document, place
 from .shapes import box, join, quad, sphere, square_towards
-from .solids import cylinder, lathe, moved, room, torus as torus_of
+from .solids import cylinder, lathe, moved, room, torus as ring_of
 from .studio import sweep
 
 WHITE, RED, GREEN = (0.73, 0.71, 0.68), (0.57, 0.06, 0.05), (0.12, 0.42, 0.11)
@@ -42,13 +42,14 @@ def box_scene():
                       document.mirror("silver", (0.93, 0.92, 0.9)))
     document.add_mesh("glass box", moved(box((-0.27, 0.001, -0.27), (0.27, 0.54, 0.27)), (0.42, 0.0, 0.35), -24.0),
                       document.glass("glass", 1.5))
-    fixture(document, [place((-0.75, 1.78, 0.55), yaw=60.0, pitch=-24.0), place((0.85, 1.78, -0.3), yaw=-30.0, pitch=-20.0)])
+    fixture(document, [place((-0.75, 1.78, 0.55), yaw=60.0, pitch=-24.0),
+                       place((0.85, 1.78, -0.3), yaw=-30.0, pitch=-20.0)])
     document.add_camera(Camera((0.0, 1.0, 2.55), (0.0, 0.86, 0.0), math.radians(52.0), (4, 3)))
     return document
 
 
 def fixture(document, places):
-    """A lamp that shines down: a cube of 16 mm in the focus of a mirror of focal length 40 mm, under a pane of glass."""
+    """A lamp that shines down: a cube of 16 mm in the focus (40 mm) of a mirror, behind a pane of glass."""
     focus, rim = 0.04, 0.11
     depth = rim * rim / (4.0 * focus)
     radii = [rim * i / 12 for i in range(13)]
@@ -69,7 +70,7 @@ def torus():
     document.add_mesh("backdrop", sweep(14.0, 9.0, 3.2, 6.0), document.lambert("paper", (0.66, 0.68, 0.7)))
     document.add_mesh("cube", moved(box((-1.0, 0.001, -1.0), (1.0, 2.001, 1.0)), (0.0, 0.0, 0.0), 33.0),
                       document.glass("glass", 1.5))
-    document.add_mesh("torus", torus_of(0.56, 0.24, 64, 28), document.lambert("coral", (0.85, 0.36, 0.14)),
+    document.add_mesh("torus", ring_of(0.56, 0.24, 64, 28), document.lambert("coral", (0.85, 0.36, 0.14)),
                       [place((0.0, 1.0, 0.0), yaw=38.0, pitch=62.0)])
     document.add_mesh("lamp", square_towards((-3.4, 5.2, 2.4), (0.0, 0.8, 0.0), 1.0),
                       document.emitter("lamp", (95.0, 88.0, 78.0)))

@@ -201,7 +201,8 @@ def coloured_slab_floor():
     """The same through glass that absorbs."""
     return _slab_floor("Sunlight through a coloured glass slab onto a Lambert floor.", ((0.8, 0.5, 0.25), 0.3),
                        "L = rho/pi E cos(60 deg) T with T = (1 - F)^2 a / (1 - F^2 a^2), "
-                       "a = c^(0.2 m / (0.3 m cos(theta'))) left on one way, c = (0.8, 0.5, 0.25), theta' the angle inside")
+                       "a = c^(0.2 m / (0.3 m cos(theta'))) left on one way, c = (0.8, 0.5, 0.25), "
+                       "theta' the angle inside")
 
 
 def _slab_floor(about, attenuation, formula):
@@ -228,7 +229,8 @@ def _slab_floor(about, attenuation, formula):
                 for r, e, a in zip(rho, irradiance, left)]
 
     expected = Expectation(
-        formula + ", F the exact Fresnel reflectance at 60 degrees, ior 1.5, E = (4, 5, 6) W/m^2 across the light, rho = (0.8, 0.6, 0.4), floor y = 0",
+        formula + ", F the exact Fresnel reflectance at 60 degrees, ior 1.5, E = (4, 5, 6) W/m^2 across the light, "
+        "rho = (0.8, 0.6, 0.4), floor y = 0",
         camera, radiance, iterations=192, photons=262144)
     expected.add_region("floor", (0, 64), (0, 64))
     return document, expected

@@ -5,7 +5,7 @@ import json
 import math
 import struct
 
-from .vector import add, cross, normalize, scale, sub
+from .vector import add, cross, normalize
 
 FLOAT, USHORT = 5126, 5123
 ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963

@@ -144,7 +144,10 @@ def faceted(mesh):
 
 
 def ribbon(points, depth):
-    """Polyline [(x, y)] drawn out from z = -depth / 2 to depth / 2; its front is on its left. Smooth up to 40 degrees."""
+    """Polyline [(x, y)] drawn out from z = -depth / 2 to depth / 2; its front is on its left.
+
+    Normals are smooth where it turns by less than 40 degrees.
+    """
     sides = [normalize((y0 - y1, x1 - x0, 0.0)) for (x0, y0), (x1, y1) in zip(points, points[1:])]
     mesh = Mesh([], [], [])
     for part, side in enumerate(sides):

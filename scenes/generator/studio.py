@@ -5,7 +5,7 @@ import math
 from .camera import Camera
 from .document import Document, place
 from .shapes import box, join, sphere, square_towards
-from .solids import arc, convex, cylinder, lathe, mapped, moved, ribbon, rod, spline, torus
+from .solids import arc, convex, lathe, mapped, moved, ribbon, rod, spline, torus
 
 
 def sweep(width, front, back, height, radius=1.5):
@@ -98,7 +98,8 @@ def clocks():
     """Alarm clocks: every face is lit and seen through its glass."""
     document = Document("Three alarm clocks: every face is lit and seen through its glass.", "Clocks")
     document.add_mesh("backdrop", sweep(2.4, 1.2, 0.7, 0.8, 0.25), document.lambert("wall", (0.42, 0.5, 0.52)))
-    document.add_mesh("shelf", box((-0.5, 0.0005, -0.22), (0.5, 0.02, 0.22)), document.coated("oak", (0.45, 0.27, 0.13), 0.4))
+    document.add_mesh("shelf", box((-0.5, 0.0005, -0.22), (0.5, 0.02, 0.22)),
+                      document.lambert("oak", (0.45, 0.27, 0.13)))
     places = [place((-0.138, 0.0205, 0.03), yaw=24.0), place((0.01, 0.0205, -0.05), yaw=-6.0),
               place((0.145, 0.0205, 0.03), yaw=-27.0)]
     case, rim, glass, face = clock_solids()
@@ -126,8 +127,8 @@ def clocks():
     feet = [rod((side * 0.028, 0.024, 0.0), (side * 0.044, 0.003, 0.0), 0.005, 8) for side in (-1, 1)]
     balls = [moved(sphere((0.0, 0.0, 0.0), 0.0065, 3), (side * 0.0445, 0.0065, 0.0)) for side in (-1, 1)]
     document.add_mesh("feet", join(*feet, *balls), brass, places)
-    document.add_mesh("lamp", square_towards((-0.42, 0.55, 0.5), (0.0, 0.08, 0.0), 0.12),
-                      document.emitter("lamp", (85.0, 75.0, 60.0)))
+    document.add_mesh("lamp", square_towards((-0.42, 0.55, 0.5), (0.0, 0.08, 0.0), 0.22),
+                      document.emitter("lamp", (38.0, 33.5, 27.0)))
     document.add_mesh("window", square_towards((0.8, 0.55, 0.5), (0.0, 0.08, 0.0), 0.45),
                       document.emitter("window", (1.6, 2.0, 2.6)))
     document.add_camera(Camera((0.03, 0.24, 0.6), (0.005, 0.086, 0.0), math.radians(31.0), (4, 3)))
@@ -135,7 +136,7 @@ def clocks():
 
 
 def clock_solids():
-    """(case, rim, glass, face) of a clock of 12 cm that looks along +z, its middle 7.5 cm up. The glass is a meniscus."""
+    """(case, rim, glass, face) of a clock of 12 cm that looks along +z, its middle 7.5 cm up; the glass is bent."""
     def up(mesh):
         return mapped(mesh, (0.0, 0.075, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0), (0.0, -1.0, 0.0))
     case = lathe([(0.0, -0.03), (0.04, -0.03), *arc((0.045, -0.02), 0.01, -60.0, 0.0, 4), (0.055, 0.016),

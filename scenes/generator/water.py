@@ -60,7 +60,7 @@ def water():
     x, z, depth, rim = 1.7, 1.25, 1.15, 0.12
     document.add_mesh("pool", basin(x, z, depth, rim), document.lambert("plaster", (0.5, 0.76, 0.8)))
     document.add_mesh("lines", lines(x, z, depth), document.lambert("line tiles", (0.05, 0.16, 0.34)))
-    document.add_mesh("water", waves(x + 0.03, z + 0.03, -depth - 0.03, 68, 50),
+    document.add_mesh("water", waves(x + 0.03, z + 0.03, -depth - 0.03, 64, 48),
                       document.glass("water", 1.33, ((0.5, 0.88, 0.94), 4.0)))
     document.add_mesh("deck", deck(x, z, rim, 1.35), document.lambert("stone", (0.6, 0.54, 0.46)))
     document.add_mesh("rails", join(*[rail(x, rim, at) for at in (-0.55, -0.15)]),
@@ -115,7 +115,7 @@ def rail(x, rim, z):
 
 def ball(radius, segments):
     """Wedges of a sphere, every other one: (6 of one colour, 6 of the other)."""
-    whole = lathe([(0.0, -radius), *arc((0.0, 0.0), radius, -80.0, 80.0, 16), (0.0, radius)], segments * 4)
+    whole = lathe([(0.0, -radius), *arc((0.0, 0.0), radius, -80.0, 80.0, 16), (0.0, radius)], segments * 3)
     halves = ([], [])
     for triangle in whole.triangles:
         middle = [sum(whole.positions[i][axis] for i in triangle) for axis in range(3)]
