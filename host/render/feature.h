@@ -7,9 +7,9 @@
 namespace vkcppm {
 
 struct Feature {
-    std::uint32_t bit = 0;   // FEATURE_*
+    std::uint32_t bit = 0;  // FEATURE_*
     std::string name;
-    std::string reason;      // what in the scene or the settings asks for it
+    std::string reason;  // what in the scene or the settings asks for it
 };
 
 }  // namespace vkcppm

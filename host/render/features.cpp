@@ -36,10 +36,13 @@ public:
         const auto first = std::find_if(scene_.lights.begin(), scene_.lights.end(), is);
         if (first == scene_.lights.end()) return;
         const auto count = std::count_if(scene_.lights.begin(), scene_.lights.end(), is);
-        add(bit, name, fmt::format("light '{}'{}", first->name, count > 1 ? fmt::format(" and {} more", count - 1) : ""));
+        add(bit, name,
+            fmt::format("light '{}'{}", first->name, count > 1 ? fmt::format(" and {} more", count - 1) : ""));
     }
 
-    void add(std::uint32_t bit, const char* name, std::string reason) { features_.push_back({bit, name, std::move(reason)}); }
+    void add(std::uint32_t bit, const char* name, std::string reason) {
+        features_.push_back({bit, name, std::move(reason)});
+    }
 
     bool has(std::uint32_t bit) const { return (bits_of(features_) & bit) != 0; }
     const std::vector<SurfaceTraits>& traits() const { return traits_; }
@@ -66,7 +69,8 @@ std::vector<Feature> features_of(const Scene& scene, const FlatScene& flat) {
         if (t.gathers() && (t.normal_map || (shading.material & SHADING_FLAT) == 0)) ++smooth;
     }
     if (smooth > 0) {
-        collect.add(FEATURE_SMOOTH, "shading normals", fmt::format("{} triangles that gather photons have some", smooth));
+        collect.add(FEATURE_SMOOTH, "shading normals",
+                    fmt::format("{} triangles that gather photons have some", smooth));
     }
     collect.material(FEATURE_GLOSS, "directional gathering",
                      [](Traits t) { return t.gathers() && (t.is_rough() || (t.diffuse && t.reflects())); });
@@ -85,15 +89,18 @@ std::vector<Feature> features_of(const Scene& scene, const FlatScene& flat) {
     collect.material(FEATURE_ALPHA, "alpha", [](Traits t) { return t.alpha; });
     collect.material(FEATURE_UNLIT, "unlit surfaces", [](Traits t) { return t.unlit; });
     collect.material(FEATURE_AREA_LIGHTS, "area lights", [](Traits t) { return t.emits && !t.unlit; });
-    const auto textured = std::count_if(flat.lights.begin(), flat.lights.end(), [](const gpu::Light& l) { return l.textured != 0; });
+    const auto textured =
+        std::count_if(flat.lights.begin(), flat.lights.end(), [](const gpu::Light& l) { return l.textured != 0; });
     if (textured > 0) {
-        collect.add(FEATURE_TEXTURED_LIGHTS, "textured lights", fmt::format("{} parts of emitters with a texture or alpha", textured));
+        collect.add(FEATURE_TEXTURED_LIGHTS, "textured lights",
+                    fmt::format("{} parts of emitters with a texture or alpha", textured));
     }
     collect.light(FEATURE_POINT_LIGHTS, "point lights", Kind::point);
     collect.light(FEATURE_SPOT_LIGHTS, "spot lights", Kind::spot);
     collect.light(FEATURE_DIRECTIONAL_LIGHTS, "directional lights", Kind::directional);
     if (!flat.environment.empty()) {
-        collect.add(FEATURE_ENVIRONMENT, "environment", fmt::format("a map of {}x{}", flat.environment_size.width, flat.environment_size.height));
+        collect.add(FEATURE_ENVIRONMENT, "environment",
+                    fmt::format("a map of {}x{}", flat.environment_size.width, flat.environment_size.height));
     }
     return collect.take();
 }
@@ -101,7 +108,8 @@ std::vector<Feature> features_of(const Scene& scene, const FlatScene& flat) {
 std::vector<Feature> features_of(const Settings& settings) {
     std::vector<Feature> features;
     if (settings.aovs) features.push_back({FEATURE_AOVS, "further channels", "--aovs"});
-    if (settings.aperture > 0.0) features.push_back({FEATURE_LENS, "depth of field", fmt::format("--aperture {:g}", settings.aperture)});
+    if (settings.aperture > 0.0)
+        features.push_back({FEATURE_LENS, "depth of field", fmt::format("--aperture {:g}", settings.aperture)});
     return features;
 }
 
@@ -112,10 +120,14 @@ std::uint32_t bits_of(const std::vector<Feature>& features) {
 }
 
 std::string gathering_rule() {
-    return "Eye paths gather photons on diffuse lobes and follow lobes without roughness. A rough lobe is both followed, with its\n"
-           "own density p, and gathered on, as by k photons (--knn) of density cos/pi, weighed by the balance heuristic: of its\n"
-           "light p / (p + k cos/pi) is found by following and the rest by photons. A punctual light, which no path can meet, is\n"
-           "sampled in place of following; what of its light comes by way of mirrors or smooth glass is brought by photons alone.";
+    return "Eye paths gather photons on diffuse lobes and follow lobes without roughness. A rough lobe is both "
+           "followed, with its\n"
+           "own density p, and gathered on, as by k photons (--knn) of density cos/pi, weighed by the balance "
+           "heuristic: of its\n"
+           "light p / (p + k cos/pi) is found by following and the rest by photons. A punctual light, which no path "
+           "can meet, is\n"
+           "sampled in place of following; what of its light comes by way of mirrors or smooth glass is brought by "
+           "photons alone.";
 }
 
 }  // namespace vkcppm

@@ -16,13 +16,15 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double cover = 1.001;               // disc of parallel light, in radii of the scene
-constexpr std::uint32_t max_cut = 6;          // a textured emitter is cut in four at most this often
-constexpr double texels_a_part = 4.0;         // parts that are smaller are not cut
-constexpr int part_samples = 4;               // of a part along either side, to weigh it
-constexpr std::size_t max_parts = 1u << 20;   // of all textured emitters
+constexpr double cover = 1.001;              // disc of parallel light, in radii of the scene
+constexpr std::uint32_t max_cut = 6;         // a textured emitter is cut in four at most this often
+constexpr double texels_a_part = 4.0;        // parts that are smaller are not cut
+constexpr int part_samples = 4;              // of a part along either side, to weigh it
+constexpr std::size_t max_parts = 1u << 20;  // of all textured emitters
 
-double mean(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
+double mean(const glm::dvec3& v) {
+    return (v.x + v.y + v.z) / 3.0;
+}
 
 /// Alias table (Walker 1974, Vose 1991): entry i is kept with probability keep[i], else alias[i] stands for it; then
 /// each is drawn in proportion to its weight.
@@ -71,8 +73,13 @@ struct MeansOfImages {
 /// Cuts textured emitters into parts.
 class TexturedEmitter {
 public:
-    TexturedEmitter(const Scene& scene, const Triangle& triangle, std::vector<WeighedLight>& lights, MeansOfImages& means)
-        : scene_(scene), triangle_(triangle), material_(scene.materials[triangle.material]), lights_(lights), means_(means) {}
+    TexturedEmitter(const Scene& scene, const Triangle& triangle, std::vector<WeighedLight>& lights,
+                    MeansOfImages& means)
+        : scene_(scene),
+          triangle_(triangle),
+          material_(scene.materials[triangle.material]),
+          lights_(lights),
+          means_(means) {}
 
     /// `whole` has the flux that the factor alone would give.
     void add(const gpu::Light& whole) {
@@ -106,12 +113,13 @@ private:
     double emitted(const glm::vec2& b) const {
         double value = 1.0;
         if (material_.emissive_texture) {
-            value *= mean(glm::dvec3(nearest_texel(scene_, *material_.emissive_texture,
-                                                   uv(*material_.emissive_texture, b), true)));
+            value *= mean(glm::dvec3(
+                nearest_texel(scene_, *material_.emissive_texture, uv(*material_.emissive_texture, b), true)));
         }
         if (material_.alpha != Material::Alpha::opaque && material_.base_color_texture) {
-            const float alpha = material_.opacity * nearest_texel(scene_, *material_.base_color_texture,
-                                                                  uv(*material_.base_color_texture, b), true).a;
+            const float alpha =
+                material_.opacity *
+                nearest_texel(scene_, *material_.base_color_texture, uv(*material_.base_color_texture, b), true).a;
             value *= material_.alpha == Material::Alpha::blend ? alpha : alpha >= material_.alpha_cutoff ? 1.0 : 0.0;
         }
         return value;
@@ -135,7 +143,8 @@ private:
 
     /// whole: the mean over the image, once it is known.
     template <typename Value>
-    double mean_of_texels(const Texture& texture, const Corners& corners, std::optional<double>& whole, Value value) const {
+    double mean_of_texels(const Texture& texture, const Corners& corners, std::optional<double>& whole,
+                          Value value) const {
         const TextureImage& image = scene_.images[texture.image];
         const glm::dvec2 size(image.size.width, image.size.height);
         glm::dvec2 low(std::numeric_limits<double>::infinity()), high(-low);
@@ -165,7 +174,8 @@ private:
     glm::vec2 uv(const Texture& texture, const glm::vec2& b) const {
         const std::vector<glm::vec2>& set = scene_.uv[texture.uv_set];
         if (set.empty()) return glm::vec2(0.0f);
-        return (1.0f - b.x - b.y) * set[triangle_.vertex[0]] + b.x * set[triangle_.vertex[1]] + b.y * set[triangle_.vertex[2]];
+        return (1.0f - b.x - b.y) * set[triangle_.vertex[0]] + b.x * set[triangle_.vertex[1]] +
+               b.y * set[triangle_.vertex[2]];
     }
 
     /// Texels that a part covers, about.
@@ -184,7 +194,8 @@ private:
         const double few = weight.largest <= 1.5 * weight.mean ? texels_a_part * part_samples : texels_a_part;
         if (depth == max_cut || texels(c) <= few || lights_.size() + 4 > max_parts) return add_part(c, depth, weight);
         const glm::vec2 m01 = 0.5f * (c[0] + c[1]), m12 = 0.5f * (c[1] + c[2]), m20 = 0.5f * (c[2] + c[0]);
-        for (const Corners& part : {Corners{c[0], m01, m20}, Corners{m01, c[1], m12}, Corners{m20, m12, c[2]}, Corners{m12, m20, m01}}) {
+        for (const Corners& part :
+             {Corners{c[0], m01, m20}, Corners{m01, c[1], m12}, Corners{m20, m12, c[2]}, Corners{m12, m20, m01}}) {
             cut(part, depth + 1);
         }
     }
@@ -303,8 +314,8 @@ void add_lights(const Scene& scene, FlatScene& flat) {
     add_emitters(scene, flat, lights);
     add_environment(scene, flat, lights);
     std::erase_if(lights, [](const WeighedLight& light) { return !(light.weight > 0.0); });
-    flat.punctual_lights = std::uint32_t(
-        std::ranges::count_if(lights, [](const WeighedLight& light) { return light.light.intensity != glm::vec3(0.0f); }));
+    flat.punctual_lights = std::uint32_t(std::ranges::count_if(
+        lights, [](const WeighedLight& light) { return light.light.intensity != glm::vec3(0.0f); }));
     if (lights.empty()) return;
     std::vector<double> weights;
     for (const WeighedLight& light : lights) weights.push_back(light.weight);

@@ -24,7 +24,8 @@ std::string text(const glm::vec3& v) {
 bool partly_there(const Scene& scene, const Material& material) {
     if (material.alpha == Material::Alpha::opaque) return false;
     const bool image = material.base_color_texture && has_alpha(scene.images.at(material.base_color_texture->image));
-    const bool vertices = std::any_of(scene.colors.begin(), scene.colors.end(), [](const glm::vec4& c) { return c.a < 1.0f; });
+    const bool vertices =
+        std::any_of(scene.colors.begin(), scene.colors.end(), [](const glm::vec4& c) { return c.a < 1.0f; });
     return material.opacity < 1.0f || image || vertices;
 }
 
@@ -62,7 +63,8 @@ SurfaceTraits traits_of(const Scene& scene, const Material& m) {
     t.alpha = partly_there(scene, m);
     t.emits = m.emission != black;
     const auto textures = textures_of(m);
-    t.textured = std::any_of(textures.begin(), textures.end(), [](const NamedTexture& n) { return n.texture->has_value(); });
+    t.textured =
+        std::any_of(textures.begin(), textures.end(), [](const NamedTexture& n) { return n.texture->has_value(); });
     if (m.unlit) return t;
     const bool dielectric = m.metallic < 1.0f || m.metallic_roughness_texture;
     const bool opaque = m.transmission < 1.0f || m.transmission_texture;
@@ -88,7 +90,7 @@ gpu::SurfaceMaterial surface_of(const Scene& scene, const Material& m, double sc
     surface.ior = m.ior == 0.0f ? infinite_ior : m.ior;
     surface.metallic = is_black_metal(m) ? 0.0f : m.metallic;
     surface.roughness = m.roughness;
-    surface.transmission = m.transmission;
+    surface.transmission = is_black_metal(m) ? 0.0f : m.transmission;
     surface.specular = is_black_metal(m) ? 0.0f : m.specular;
     surface.specular_color = m.specular_color;
     surface.opacity = m.opacity;
@@ -107,7 +109,8 @@ gpu::SurfaceMaterial surface_of(const Scene& scene, const Material& m, double sc
     surface.normal_scale = m.normal_scale;
     surface.clearcoat_normal_scale = m.clearcoat_normal_scale;
     const auto textures = textures_of(m);
-    for (std::size_t i = 0; i < textures.size(); ++i) surface.texture[i] = table.add(*textures[i].texture, textures[i].srgb);
+    for (std::size_t i = 0; i < textures.size(); ++i)
+        surface.texture[i] = table.add(*textures[i].texture, textures[i].srgb);
     if (m.double_sided) surface.flags |= SURFACE_DOUBLE_SIDED;
     if (traits.thin) surface.flags |= SURFACE_THIN;
     if (traits.alpha) surface.flags |= m.alpha == Material::Alpha::mask ? SURFACE_MASK : SURFACE_BLEND;
@@ -121,11 +124,19 @@ std::string describe_material(const Scene& scene, const Material& m) {
     std::vector<std::string> parts;
     const auto roughness = [](float r) { return r > 0.0f ? fmt::format("roughness {:g}", r) : std::string("smooth"); };
     if (t.unlit) parts.push_back(fmt::format("unlit, seen as {}", text(m.base_color)));
-    if (t.diffuse) parts.push_back(fmt::format("diffuse {}", text(m.base_color * (1.0f - (m.metallic_roughness_texture ? 0.0f : m.metallic)))));
-    if (t.metal) parts.push_back(fmt::format("metal {}{}, {}", m.metallic < 1.0f ? fmt::format("{:g} of ", m.metallic) : "", text(m.base_color), roughness(m.roughness)));
-    if (t.coat) parts.push_back(fmt::format("coat of ior {:g}{}, {}", m.ior, m.specular < 1.0f ? fmt::format(", weight {:g}", m.specular) : "", roughness(m.roughness)));
+    if (t.diffuse)
+        parts.push_back(fmt::format("diffuse {}",
+                                    text(m.base_color * (1.0f - (m.metallic_roughness_texture ? 0.0f : m.metallic)))));
+    if (t.metal)
+        parts.push_back(fmt::format("metal {}{}, {}", m.metallic < 1.0f ? fmt::format("{:g} of ", m.metallic) : "",
+                                    text(m.base_color), roughness(m.roughness)));
+    if (t.coat)
+        parts.push_back(fmt::format("coat of ior {:g}{}, {}", m.ior,
+                                    m.specular < 1.0f ? fmt::format(", weight {:g}", m.specular) : "",
+                                    roughness(m.roughness)));
     if (t.glass) {
-        std::string glass = fmt::format("{} of ior {:g}, tint {}, {}", t.thin ? "thin-walled glass" : "solid glass", m.ior, text(m.base_color), roughness(m.roughness));
+        std::string glass = fmt::format("{} of ior {:g}, tint {}, {}", t.thin ? "thin-walled glass" : "solid glass",
+                                        m.ior, text(m.base_color), roughness(m.roughness));
         if (m.transmission < 1.0f) glass += fmt::format(", {:g} of the surface", m.transmission);
         if (t.absorbs) glass += fmt::format(", {} after {:g} m", text(m.attenuation_color), m.attenuation_distance);
         if (t.disperses) glass += fmt::format(", Abbe number {:g}", 20.0f / m.dispersion);
@@ -133,14 +144,17 @@ std::string describe_material(const Scene& scene, const Material& m) {
     }
     if (t.clearcoat) parts.push_back(fmt::format("clearcoat {:g}, {}", m.clearcoat, roughness(m.clearcoat_roughness)));
     if (parts.empty()) parts.push_back("black");
-    if (t.alpha) parts.push_back(m.alpha == Material::Alpha::mask ? fmt::format("there where alpha >= {:g}", m.alpha_cutoff) : std::string("there with probability alpha"));
+    if (t.alpha)
+        parts.push_back(m.alpha == Material::Alpha::mask ? fmt::format("there where alpha >= {:g}", m.alpha_cutoff)
+                                                         : std::string("there with probability alpha"));
     std::vector<std::string> names;
     for (const NamedTexture& texture : textures_of(m)) {
         if (texture.texture->has_value()) names.push_back(texture.name);
     }
     if (!names.empty()) parts.push_back(fmt::format("textures: {}", fmt::join(names, ", ")));
     if (t.emits) {
-        parts.push_back(fmt::format("emits {} W m^-2 sr^-1 from {}", text(m.emission), m.double_sided ? "both sides" : "its front"));
+        parts.push_back(fmt::format("emits {} W m^-2 sr^-1 from {}", text(m.emission),
+                                    m.double_sided ? "both sides" : "its front"));
     }
     return fmt::format("{}", fmt::join(parts, "; "));
 }

@@ -13,15 +13,15 @@ namespace vkcppm {
 struct SurfaceTraits {
     bool diffuse = false;
     bool metal = false;
-    bool coat = false;              // a dielectric coat over a diffuse base
-    bool glass = false;             // transmits
-    bool thin = false;              //   without a volume
-    bool absorbs = false;           //   with absorption in its volume
+    bool coat = false;     // a dielectric coat over a diffuse base
+    bool glass = false;    // transmits
+    bool thin = false;     //   without a volume
+    bool absorbs = false;  //   with absorption in its volume
     bool disperses = false;
-    bool rough = false;             // a lobe of reflection or transmission of roughness above 0
+    bool rough = false;  // a lobe of reflection or transmission of roughness above 0
     bool clearcoat = false;
     bool rough_clearcoat = false;
-    bool alpha = false;             // is partly not there
+    bool alpha = false;  // is partly not there
     bool unlit = false;
     bool textured = false;
     bool normal_map = false;

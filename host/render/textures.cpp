@@ -47,8 +47,9 @@ std::uint32_t TextureTable::add(const std::optional<Texture>& texture, bool srgb
     lookup.first = first;
     lookup.width = image.size.width;
     lookup.height = image.size.height;
-    lookup.flags = wrap_flag(texture->wrap_s) | wrap_flag(texture->wrap_t) << 2 | (texture->nearest ? TEXTURE_NEAREST : 0u) |
-                   (texture->uv_set == 1 ? TEXTURE_SECOND_UV : 0u) | (srgb ? TEXTURE_SRGB : 0u);
+    lookup.flags = wrap_flag(texture->wrap_s) | wrap_flag(texture->wrap_t) << 2 |
+                   (texture->nearest ? TEXTURE_NEAREST : 0u) | (texture->uv_set == 1 ? TEXTURE_SECOND_UV : 0u) |
+                   (srgb ? TEXTURE_SRGB : 0u);
     const glm::mat2& m = texture->matrix;  // columns
     lookup.matrix = {m[0][0], m[1][0], m[0][1], m[1][1]};
     lookup.offset = texture->offset;

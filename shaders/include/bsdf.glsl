@@ -36,13 +36,12 @@ float largest(vec3 v) { return max(v.x, max(v.y, v.z)); }
 // Fresnel reflectance of a smooth dielectric, unpolarised. cosine in [0, 1] on the side of incidence,
 // eta = index on that side / index beyond. cosine_t: cosine beyond, 0 under total internal reflection.
 float fresnel_dielectric(float cosine, float eta, out float cosine_t) {
-    float sin2_t = eta * eta * (1.0 - cosine * cosine);
-    cosine_t = 0.0;
-    if (sin2_t >= 1.0) return 1.0;
-    cosine_t = sqrt(1.0 - sin2_t);
+    float cos2_t = 1.0 - eta * eta * (1.0 - cosine * cosine);
+    cosine_t = sqrt(max(cos2_t, 0.0));
     float parallel = (cosine - eta * cosine_t) / (cosine + eta * cosine_t);
     float perpendicular = (eta * cosine - cosine_t) / (eta * cosine + cosine_t);
-    return 0.5 * (parallel * parallel + perpendicular * perpendicular);
+    // No early return: the inliner would make a loop of it, which software Vulkan runs masked.
+    return cos2_t > 0.0 ? 0.5 * (parallel * parallel + perpendicular * perpendicular) : 1.0;
 }
 
 float schlick_power(float cosine) {
@@ -180,20 +179,25 @@ vec4 lobes_of(Bsdf b, Surface surface, vec3 wo) {
     return lobes;
 }
 
-// The lobe that u in [0, 1) chooses, and 1 / its probability.
+// The lobe that u in [0, 1) chooses, and 1 / its probability: the last one that begins below u and is not empty.
 uint choose_lobe(vec4 lobes, float u, out float inverse_probability) {
     float total = lobes.x + lobes.y + lobes.z + lobes.w;
     float at = u * total;
-    float chosen_share = 1.0;
-    uint chosen = LOBE_NONE;
-    for (uint i = 0u; i < 4u; ++i) {
-        if (lobes[i] > 0.0 && at >= 0.0) {
-            chosen = i;
-            chosen_share = lobes[i];
-        }
-        at -= lobes[i];
+    uint chosen = lobes.x > 0.0 ? LOBE_DIFFUSE : LOBE_NONE;
+    float share = lobes.x;
+    if (lobes.y > 0.0 && at >= lobes.x) {
+        chosen = LOBE_REFLECTION;
+        share = lobes.y;
     }
-    inverse_probability = total / chosen_share;
+    if (lobes.z > 0.0 && at >= lobes.x + lobes.y) {
+        chosen = LOBE_TRANSMISSION;
+        share = lobes.z;
+    }
+    if (lobes.w > 0.0 && at >= lobes.x + lobes.y + lobes.z) {
+        chosen = LOBE_CLEARCOAT;
+        share = lobes.w;
+    }
+    inverse_probability = total / share;
     return chosen;
 }
 

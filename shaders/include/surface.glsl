@@ -41,7 +41,8 @@ Surface surface_at(Hit hit, vec3 direction) {
 
 // Origin of a ray that leaves the surface into `direction`, off its plane by the rounding error of the hit.
 vec3 leave(Surface surface, vec3 direction) {
-    return surface.position + (dot(direction, surface.geometric) > 0.0 ? surface.error : -surface.error) * surface.geometric;
+    float side = dot(direction, surface.geometric) > 0.0 ? 1.0 : -1.0;
+    return surface.position + side * surface.error * surface.geometric;
 }
 
 // The tangent of the triangle at the hit, on its front: that of the file, else the derivative of the point by u.
@@ -120,7 +121,8 @@ SurfaceMaterial material_at(Hit hit, vec3 direction, inout Surface surface) {
         if ((FEATURES & FEATURE_NORMAL_MAPS) != 0u) {
             float side = surface.front ? 1.0 : -1.0;
             vec3 n = side * surface.normal;
-            surface.normal = side * bent_normal(hit, n, material.texture[TEXTURE_NORMAL], material.normal_scale, coordinates);
+            surface.normal =
+                side * bent_normal(hit, n, material.texture[TEXTURE_NORMAL], material.normal_scale, coordinates);
             if (dot(surface.normal, direction) >= 0.0) surface.normal = surface.geometric;
             if ((FEATURES & FEATURE_CLEARCOAT) != 0u) {
                 surface.clearcoat_normal = side * bent_normal(hit, n, material.texture[TEXTURE_CLEARCOAT_NORMAL],

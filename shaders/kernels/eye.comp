@@ -2,9 +2,9 @@
 // One invocation a pixel: a ray through a random point of the pixel (and of the lens), on to a surface on which photons
 // are gathered. The rule, for every surface alike: paths follow lobes of width 0 (mirrors, smooth glass, smooth coats)
 // and gather on diffuse lobes; between following a rough lobe, gathering on it and sampling a punctual light the path
-// chooses at random, and each way weighs what it finds (followed_weight of include/bsdf.glsl). Reads the scene; writes hit_position, hit_weight,
-// hit_emission, hit_surface in glossy scenes (and gathered[].flux as the direction of an unfinished path).
-// O(bounces x log triangles). Fails by running out of steps: the path then goes on next round.
+// chooses at random, and each way weighs what it finds (followed_weight of include/bsdf.glsl). Reads the scene; writes
+// hit_position, hit_weight, hit_emission, hit_surface in glossy scenes (and gathered[].flux as the direction of an
+// unfinished path). O(bounces x log triangles). Fails by running out of steps: the path then goes on next round.
 #include "include/kernel.glsl"
 #include "include/rng.glsl"
 #include "include/frame.glsl"
@@ -35,8 +35,9 @@ void camera_ray(uint pixel, out vec3 origin, out vec3 direction, out float dista
     vec3 eye = params.eye;
     if ((FEATURES & FEATURE_LENS) != 0u) {
         // A thin lens: what lies in the plane of focus is met by rays from all of it.
-        vec2 lens = params.lens_radius * sample_disc(vec2(stratified(params.seed, launch.iteration, pixel, LENS_DIMENSION),
-                                                          stratified(params.seed, launch.iteration, pixel, LENS_DIMENSION + 1u)));
+        vec2 u = vec2(stratified(params.seed, launch.iteration, pixel, LENS_DIMENSION),
+                      stratified(params.seed, launch.iteration, pixel, LENS_DIMENSION + 1u));
+        vec2 lens = params.lens_radius * sample_disc(u);
         vec3 offset = lens.x * normalize(params.right) + lens.y * normalize(params.up);
         eye += offset;
         through = through * params.focus_distance - offset;

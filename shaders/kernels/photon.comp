@@ -1,8 +1,8 @@
 #version 460
 // One invocation a lane of `photons_per_lane` light paths; the next path starts when the lane's path ends, so that a
 // SIMD group stays full. Reads the scene and the lights; writes photons [lanes x capacity], photon_flux, the
-// photons stored a lane (counters), paths. O(paths x bounces x log triangles). Fails by running out of steps (goes on next round) or
-// of slots (counts on without storing, reports the number needed).
+// photons stored a lane (counters), paths. O(paths x bounces x log triangles). Fails by running out of steps (goes on
+// next round) or of slots (counts on without storing, reports the number needed).
 #include "include/kernel.glsl"
 #include "include/rng.glsl"
 #include "include/frame.glsl"
@@ -25,8 +25,8 @@ layout(binding = BIND_COUNTERS, scalar) writeonly buffer CounterBlock { uint cou
 
 #define FIRST_ROULETTE 4u  // bounce from which Russian roulette decides whether a path goes on
 
-// Under shading normals scattering is not symmetric: the factor |wi.ns wo.ng| / |wi.ng wo.ns| of Veach 1997, section 5.3,
-// keeps photons and eye paths consistent. `before`, `after`: directions of travel.
+// Under shading normals scattering is not symmetric: the factor |wi.ns wo.ng| / |wi.ng wo.ns| of Veach 1997, section
+// 5.3, keeps photons and eye paths consistent. `before`, `after`: directions of travel.
 float shading_correction(Surface surface, vec3 before, vec3 after) {
     float cos_geometric = dot(after, surface.geometric);
     float cos_shading = dot(after, surface.normal);
@@ -113,7 +113,8 @@ void main() {
                 if (alive) {
                     vec3 before = state.direction;
                     float density;
-                    state.power *= sample_lobe(lobe, bsdf, surface, u.xy, false, state.direction, density) * inverse_probability;
+                    vec3 weight = sample_lobe(lobe, bsdf, surface, u.xy, false, state.direction, density);
+                    state.power *= weight * inverse_probability;
                     state.memory &= ~PATH_DIRECT;
                     if (density != DELTA) {
                         state.memory &= ~PATH_STRAIGHT;

@@ -47,7 +47,8 @@ Texture checker(Scene& scene) {
 /// Every diffuse material that reflects.
 void for_diffuse(Scene& scene, const std::function<void(Material&)>& change) {
     for (Material& material : scene.materials) {
-        if (material.metallic == 0.0f && material.transmission == 0.0f && material.base_color != glm::vec3(0.0f)) change(material);
+        if (material.metallic == 0.0f && material.transmission == 0.0f && material.base_color != glm::vec3(0.0f))
+            change(material);
     }
 }
 
@@ -67,23 +68,60 @@ std::vector<Case> cases() {
     const auto diffuse = [](auto change) { return [change](Scene& s, Settings&) { for_diffuse(s, change); }; };
     const auto glass = [](auto change) { return [change](Scene& s, Settings&) { for_glass(s, change); }; };
     return {
-        {"smooth coats", FEATURE_COAT | FEATURE_GLOSS, diffuse([](Material& m) { m.specular = 1.0f; m.roughness = 0.0f; })},
-        {"rough coats", FEATURE_COAT | FEATURE_GLOSS | FEATURE_ROUGH, diffuse([](Material& m) { m.specular = 1.0f; m.roughness = 0.4f; })},
-        {"rough metal", FEATURE_GLOSS | FEATURE_ROUGH, [](Scene& s, Settings&) { for (Material& m : s.materials) if (m.metallic > 0.0f) m.roughness = 0.4f; }},
+        {"smooth coats", FEATURE_COAT | FEATURE_GLOSS, diffuse([](Material& m) {
+             m.specular = 1.0f;
+             m.roughness = 0.0f;
+         })},
+        {"rough coats", FEATURE_COAT | FEATURE_GLOSS | FEATURE_ROUGH, diffuse([](Material& m) {
+             m.specular = 1.0f;
+             m.roughness = 0.4f;
+         })},
+        {"rough metal", FEATURE_GLOSS | FEATURE_ROUGH,
+         [](Scene& s, Settings&) {
+             for (Material& m : s.materials)
+                 if (m.metallic > 0.0f) m.roughness = 0.4f;
+         }},
         {"rough glass", FEATURE_GLOSS | FEATURE_ROUGH, glass([](Material& m) { m.roughness = 0.3f; })},
         {"thin glass", FEATURE_THIN, glass([](Material& m) { m.thickness = 0.0f; })},
-        {"absorption", FEATURE_VOLUME, glass([](Material& m) { m.attenuation_color = {0.9f, 0.5f, 0.3f}; m.attenuation_distance = 0.5f; })},
+        {"absorption", FEATURE_VOLUME, glass([](Material& m) {
+             m.attenuation_color = {0.9f, 0.5f, 0.3f};
+             m.attenuation_distance = 0.5f;
+         })},
         {"dispersion", FEATURE_DISPERSION, glass([](Material& m) { m.dispersion = 0.5f; })},
         {"clearcoats", FEATURE_CLEARCOAT | FEATURE_GLOSS, diffuse([](Material& m) { m.clearcoat = 1.0f; })},
-        {"base colour textures", FEATURE_TEXTURES, [](Scene& s, Settings&) { const Texture t = checker(s); for_diffuse(s, [&](Material& m) { m.base_color_texture = t; }); }},
-        {"normal maps", FEATURE_TEXTURES | FEATURE_NORMAL_MAPS | FEATURE_SMOOTH, [](Scene& s, Settings&) { const Texture t = checker(s); for_diffuse(s, [&](Material& m) { m.normal_texture = t; }); }},
-        {"vertex colours", FEATURE_VERTEX_COLORS, [](Scene& s, Settings&) { s.colors.assign(s.positions.size(), glm::vec4(0.9f, 0.8f, 0.7f, 1.0f)); }},
-        {"alpha", FEATURE_ALPHA, diffuse([](Material& m) { m.alpha = Material::Alpha::blend; m.opacity = 0.9f; })},
+        {"base colour textures", FEATURE_TEXTURES,
+         [](Scene& s, Settings&) {
+             const Texture t = checker(s);
+             for_diffuse(s, [&](Material& m) { m.base_color_texture = t; });
+         }},
+        {"normal maps", FEATURE_TEXTURES | FEATURE_NORMAL_MAPS | FEATURE_SMOOTH,
+         [](Scene& s, Settings&) {
+             const Texture t = checker(s);
+             for_diffuse(s, [&](Material& m) { m.normal_texture = t; });
+         }},
+        {"vertex colours", FEATURE_VERTEX_COLORS,
+         [](Scene& s, Settings&) { s.colors.assign(s.positions.size(), glm::vec4(0.9f, 0.8f, 0.7f, 1.0f)); }},
+        {"alpha", FEATURE_ALPHA, diffuse([](Material& m) {
+             m.alpha = Material::Alpha::blend;
+             m.opacity = 0.9f;
+         })},
         {"unlit surfaces", FEATURE_UNLIT, [](Scene& s, Settings&) { s.materials.at(0).unlit = true; }},
-        {"depth of field", FEATURE_LENS, [](Scene&, Settings& settings) { settings.aperture = 0.05; settings.focus_distance = 1.5; }},
-        {"textured lights", FEATURE_TEXTURES | FEATURE_TEXTURED_LIGHTS, [](Scene& s, Settings&) { const Texture t = checker(s); for (Material& m : s.materials) if (m.emission != glm::vec3(0.0f)) m.emissive_texture = t; }},
+        {"depth of field", FEATURE_LENS,
+         [](Scene&, Settings& settings) {
+             settings.aperture = 0.05;
+             settings.focus_distance = 1.5;
+         }},
+        {"textured lights", FEATURE_TEXTURES | FEATURE_TEXTURED_LIGHTS,
+         [](Scene& s, Settings&) {
+             const Texture t = checker(s);
+             for (Material& m : s.materials)
+                 if (m.emission != glm::vec3(0.0f)) m.emissive_texture = t;
+         }},
         {"point light", FEATURE_POINT_LIGHTS, [](Scene& s, Settings&) { s.lights.push_back(room().lights.at(0)); }},
-        {"environment", FEATURE_ENVIRONMENT, [](Scene& s, Settings&) { s.environment = Environment{{64, 32}, std::vector<glm::vec3>(64 * 32, glm::vec3(0.5f))}; }},
+        {"environment", FEATURE_ENVIRONMENT,
+         [](Scene& s, Settings&) {
+             s.environment = Environment{{64, 32}, std::vector<glm::vec3>(64 * 32, glm::vec3(0.5f))};
+         }},
         {"further channels", FEATURE_AOVS, [](Scene&, Settings& settings) { settings.aovs = true; }},
     };
 }
@@ -143,12 +181,17 @@ int main(int argc, char** argv) {
             keep_least(on[i], changed, used, 0);
         }
     }
-    fmt::print("Device ms an iteration of a room, {}x{}, {} paths, on {}; in the columns of passes: idle / on, in units of off.\n\n",
-               settings.size->width, settings.size->height, settings.photons, plain_device().info().driver);
+    fmt::print(
+        "Device ms an iteration of a room, {}x{}, {} paths, on {}; in the columns of passes: idle / on, in units of "
+        "off.\n\n",
+        settings.size->width, settings.size->height, settings.photons, plain_device().info().driver);
     fmt::print("| feature | off | idle | on | on / off | eye | photon | gather |\n|---|---|---|---|---|---|---|---|\n");
     for (std::size_t i = 0; i < all.size(); ++i) {
-        const auto ratio = [&](const char* pass) { return fmt::format("{:.2f} / {:.2f}", idle[i][pass] / off[pass], on[i][pass] / off[pass]); };
-        fmt::print("| {} | {:.1f} | {:.1f} | {:.1f} | {:.2f} | {} | {} | {} |\n", all[i].name, 1e3 * off["all"], 1e3 * idle[i]["all"],
-                   1e3 * on[i]["all"], on[i]["all"] / off["all"], ratio("eye"), ratio("photon"), ratio("gather"));
+        const auto ratio = [&](const char* pass) {
+            return fmt::format("{:.2f} / {:.2f}", idle[i][pass] / off[pass], on[i][pass] / off[pass]);
+        };
+        fmt::print("| {} | {:.1f} | {:.1f} | {:.1f} | {:.2f} | {} | {} | {} |\n", all[i].name, 1e3 * off["all"],
+                   1e3 * idle[i]["all"], 1e3 * on[i]["all"], on[i]["all"] / off["all"], ratio("eye"), ratio("photon"),
+                   ratio("gather"));
     }
 }

@@ -19,7 +19,9 @@ struct Case {
     std::function<void(Scene&, Settings&)> change;  // of the room below
 };
 
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+void PrintTo(const Case& c, std::ostream* out) {
+    *out << c.name;
+}
 
 /// Materials of the room, in the order in which it adds them.
 enum : std::size_t { walls, floor_, ball, pane, lamp };
@@ -82,61 +84,144 @@ Case on_surfaces(const char* name, std::function<void(Material&)> change) {
 }
 
 const Case cases[] = {
-    on_surfaces("metal_02", [](Material& m) { m.metallic = 1.0f; m.roughness = 0.2f; }),
-    on_surfaces("metal_05", [](Material& m) { m.metallic = 1.0f; m.roughness = 0.5f; }),
-    on_surfaces("metal_10", [](Material& m) { m.metallic = 1.0f; m.roughness = 1.0f; }),
-    on_surfaces("coat_smooth", [](Material& m) { m.specular = 1.0f; m.roughness = 0.0f; }),
-    on_surfaces("coat_03", [](Material& m) { m.specular = 1.0f; m.roughness = 0.3f; m.ior = 1.8f; }),
-    on_surfaces("coat_10", [](Material& m) { m.specular = 1.0f; m.roughness = 1.0f; }),
-    on_surfaces("coat_coloured", [](Material& m) { m.specular = 0.8f; m.specular_color = {3.0f, 1.0f, 0.2f}; m.roughness = 0.4f; }),
-    on_surfaces("half_metal", [](Material& m) { m.metallic = 0.5f; m.specular = 1.0f; m.roughness = 0.4f; }),
-    on_surfaces("clearcoat_smooth", [](Material& m) { m.clearcoat = 1.0f; m.specular = 1.0f; m.roughness = 0.6f; }),
-    on_surfaces("clearcoat_04", [](Material& m) { m.clearcoat = 0.7f; m.clearcoat_roughness = 0.4f; m.metallic = 1.0f; m.roughness = 0.5f; }),
+    on_surfaces("metal_02",
+                [](Material& m) {
+                    m.metallic = 1.0f;
+                    m.roughness = 0.2f;
+                }),
+    on_surfaces("metal_05",
+                [](Material& m) {
+                    m.metallic = 1.0f;
+                    m.roughness = 0.5f;
+                }),
+    on_surfaces("metal_10",
+                [](Material& m) {
+                    m.metallic = 1.0f;
+                    m.roughness = 1.0f;
+                }),
+    on_surfaces("coat_smooth",
+                [](Material& m) {
+                    m.specular = 1.0f;
+                    m.roughness = 0.0f;
+                }),
+    on_surfaces("coat_03",
+                [](Material& m) {
+                    m.specular = 1.0f;
+                    m.roughness = 0.3f;
+                    m.ior = 1.8f;
+                }),
+    on_surfaces("coat_10",
+                [](Material& m) {
+                    m.specular = 1.0f;
+                    m.roughness = 1.0f;
+                }),
+    on_surfaces("coat_coloured",
+                [](Material& m) {
+                    m.specular = 0.8f;
+                    m.specular_color = {3.0f, 1.0f, 0.2f};
+                    m.roughness = 0.4f;
+                }),
+    on_surfaces("half_metal",
+                [](Material& m) {
+                    m.metallic = 0.5f;
+                    m.specular = 1.0f;
+                    m.roughness = 0.4f;
+                }),
+    on_surfaces("clearcoat_smooth",
+                [](Material& m) {
+                    m.clearcoat = 1.0f;
+                    m.specular = 1.0f;
+                    m.roughness = 0.6f;
+                }),
+    on_surfaces("clearcoat_04",
+                [](Material& m) {
+                    m.clearcoat = 0.7f;
+                    m.clearcoat_roughness = 0.4f;
+                    m.metallic = 1.0f;
+                    m.roughness = 0.5f;
+                }),
     {"glass", [](Scene& s, Settings&) { make_glass(s.materials[ball], 0.0f, 1.0f); }},
     {"glass_rough", [](Scene& s, Settings&) { make_glass(s.materials[ball], 0.4f, 1.0f); }},
-    {"glass_part", [](Scene& s, Settings&) { make_glass(s.materials[ball], 0.2f, 1.0f); s.materials[ball].transmission = 0.5f; }},
-    {"absorption", [](Scene& s, Settings&) {
+    {"glass_part",
+     [](Scene& s, Settings&) {
+         make_glass(s.materials[ball], 0.2f, 1.0f);
+         s.materials[ball].transmission = 0.5f;
+     }},
+    {"absorption",
+     [](Scene& s, Settings&) {
          make_glass(s.materials[ball], 0.0f, 1.0f);
          s.materials[ball].attenuation_color = {0.8f, 0.3f, 0.1f};
          s.materials[ball].attenuation_distance = 0.5f;
      }},
     {"thin", [](Scene& s, Settings&) { make_glass(s.materials[pane], 0.0f, 0.0f); }},
     {"thin_rough", [](Scene& s, Settings&) { make_glass(s.materials[pane], 0.5f, 0.0f); }},
-    {"dispersion", [](Scene& s, Settings&) { make_glass(s.materials[ball], 0.0f, 1.0f); s.materials[ball].dispersion = 2.0f; }},
-    {"blend", [](Scene& s, Settings&) { for (const auto i : {ball, pane}) { s.materials[i].alpha = Material::Alpha::blend; s.materials[i].opacity = 0.4f; } }},
-    {"mask", [](Scene& s, Settings&) {
-         s.materials[pane].base_color_texture = add_image(s, 8, 8, [](auto x, auto y) { return glm::vec4(0.9f, 0.5f, 0.7f, (x + y) % 3 == 0 ? 0.2f : 0.8f); });
+    {"dispersion",
+     [](Scene& s, Settings&) {
+         make_glass(s.materials[ball], 0.0f, 1.0f);
+         s.materials[ball].dispersion = 2.0f;
+     }},
+    {"blend",
+     [](Scene& s, Settings&) {
+         for (const auto i : {ball, pane}) {
+             s.materials[i].alpha = Material::Alpha::blend;
+             s.materials[i].opacity = 0.4f;
+         }
+     }},
+    {"mask",
+     [](Scene& s, Settings&) {
+         s.materials[pane].base_color_texture = add_image(
+             s, 8, 8, [](auto x, auto y) { return glm::vec4(0.9f, 0.5f, 0.7f, (x + y) % 3 == 0 ? 0.2f : 0.8f); });
          s.materials[pane].alpha = Material::Alpha::mask;
      }},
-    {"textures", [](Scene& s, Settings&) {
-         s.materials[floor_].base_color_texture = add_image(s, 16, 4, [](auto x, auto y) { return glm::vec4(float(x % 4) / 3.0f, float(y) / 3.0f, 0.5f, 1.0f); });
-         s.materials[ball].metallic_roughness_texture = add_image(s, 4, 4, [](auto x, auto y) { return glm::vec4(0.0f, 0.25f * float(x) + 0.2f, float(y) / 3.0f, 1.0f); });
+    {"textures",
+     [](Scene& s, Settings&) {
+         s.materials[floor_].base_color_texture = add_image(
+             s, 16, 4, [](auto x, auto y) { return glm::vec4(float(x % 4) / 3.0f, float(y) / 3.0f, 0.5f, 1.0f); });
+         s.materials[ball].metallic_roughness_texture = add_image(
+             s, 4, 4, [](auto x, auto y) { return glm::vec4(0.0f, 0.25f * float(x) + 0.2f, float(y) / 3.0f, 1.0f); });
          s.materials[ball].metallic = 1.0f;
          s.materials[ball].specular = 1.0f;
          s.colors.clear();
          for (const glm::dvec3& p : s.positions) s.colors.emplace_back(0.5 + 0.25 * p.x, 0.9, 1.0 - 0.2 * p.z, 1.0);
      }},
-    {"normal_map", [](Scene& s, Settings&) {
-         const Texture bumps = add_image(s, 8, 8, [](auto x, auto y) { return glm::vec4(0.5f + 0.2f * float(int(x % 3) - 1), 0.5f + 0.2f * float(int(y % 3) - 1), 0.95f, 1.0f); });
+    {"normal_map",
+     [](Scene& s, Settings&) {
+         const Texture bumps = add_image(s, 8, 8, [](auto x, auto y) {
+             return glm::vec4(0.5f + 0.2f * float(int(x % 3) - 1), 0.5f + 0.2f * float(int(y % 3) - 1), 0.95f, 1.0f);
+         });
          for (const auto i : {floor_, ball}) s.materials[i].normal_texture = bumps;
          s.materials[ball].specular = 1.0f;
          s.materials[ball].roughness = 0.4f;
      }},
-    {"textured_lamp", [](Scene& s, Settings&) {
-         s.materials[lamp].emissive_texture = add_image(s, 8, 8, [](auto x, auto y) { return x < 3 && y > 2 ? glm::vec4(1.0f) : glm::vec4(0.3f, 0.1f, 0.05f, 1.0f); });
+    {"textured_lamp",
+     [](Scene& s, Settings&) {
+         s.materials[lamp].emissive_texture = add_image(s, 8, 8, [](auto x, auto y) {
+             return x < 3 && y > 2 ? glm::vec4(1.0f) : glm::vec4(0.3f, 0.1f, 0.05f, 1.0f);
+         });
      }},
     {"unlit", [](Scene& s, Settings&) { s.materials[pane].unlit = true; }},
-    {"lens", [](Scene&, Settings& settings) { settings.aperture = 0.2; settings.focus_distance = 1.2; }},
-    {"environment", [](Scene& s, Settings&) {
+    {"lens",
+     [](Scene&, Settings& settings) {
+         settings.aperture = 0.2;
+         settings.focus_distance = 1.2;
+     }},
+    {"environment",
+     [](Scene& s, Settings&) {
          s.materials[lamp].emission = glm::vec3(0.0f);
          s.triangles.erase(s.triangles.begin(), s.triangles.begin() + 10);  // the walls, not the floor
          s.materials[ball].metallic = 1.0f;
          s.materials[ball].roughness = 0.3f;
          s.environment = Environment{{16, 8}, {}};
-         for (int i = 0; i < 128; ++i) s.environment->radiance.push_back(i / 16 < 2 && i % 16 < 5 ? glm::vec3(4.0f, 3.0f, 2.0f) : glm::vec3(0.2f, 0.3f, 0.5f));
+         for (int i = 0; i < 128; ++i)
+             s.environment->radiance.push_back(i / 16 < 2 && i % 16 < 5 ? glm::vec3(4.0f, 3.0f, 2.0f)
+                                                                        : glm::vec3(0.2f, 0.3f, 0.5f));
      }},
-    {"punctual_on_gloss", [](Scene& s, Settings&) {
-         for (const auto i : {ball, pane}) { s.materials[i].metallic = 1.0f; s.materials[i].roughness = 0.35f; }
+    {"punctual_on_gloss",
+     [](Scene& s, Settings&) {
+         for (const auto i : {ball, pane}) {
+             s.materials[i].metallic = 1.0f;
+             s.materials[i].roughness = 0.35f;
+         }
          s.materials[floor_].specular = 1.0f;
          s.materials[floor_].roughness = 0.5f;
          PunctualLight point;
@@ -167,7 +252,8 @@ TEST_P(Materials, AgreeWithPathTracing) {
     EXPECT_EQ(blocks.differing, 0u) << "photons over paths, a block and channel:\n" << blocks.table;
 }
 
-INSTANTIATE_TEST_SUITE_P(Features, Materials, testing::ValuesIn(cases), [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(Features, Materials, testing::ValuesIn(cases),
+                         [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
 }  // namespace vkcppm::test

@@ -49,8 +49,8 @@ TEST_P(PaperScenes, AgreeWherePathTracingConverges) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, PaperScenes,
-                         testing::Values("box", "clocks", "conference", "cornell", "diamond", "dining", "glass", "sibenik",
-                                         "sponza", "torus", "water"),
+                         testing::Values("box", "clocks", "conference", "cornell", "diamond", "dining", "glass",
+                                         "sibenik", "sponza", "torus", "water"),
                          [](const auto& info) { return std::string(info.param); });
 
 }  // namespace

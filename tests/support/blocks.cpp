@@ -14,7 +14,8 @@ namespace vkcppm::test {
 namespace {
 
 /// Mean of a channel over a block of every picture: mean and variance of that mean.
-std::pair<double, double> moments(const Pictures& pictures, std::uint32_t x0, std::uint32_t y0, std::uint32_t side, int channel) {
+std::pair<double, double> moments(const Pictures& pictures, std::uint32_t x0, std::uint32_t y0, std::uint32_t side,
+                                  int channel) {
     std::vector<double> means;
     for (const Image& image : pictures) {
         double sum = 0.0;
@@ -63,7 +64,8 @@ TwoWays render_two_ways(const Scene& scene, Settings settings, std::uint32_t sam
     return pictures;
 }
 
-TwoWays render_two_ways_extrapolated(const Scene& scene, Settings settings, std::uint32_t samples, std::uint32_t seeds) {
+TwoWays render_two_ways_extrapolated(const Scene& scene, Settings settings, std::uint32_t samples,
+                                     std::uint32_t seeds) {
     TwoWays pictures = render_two_ways(scene, settings, samples, seeds);
     settings.photons *= 4;
     for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
@@ -83,13 +85,20 @@ BlockComparison compare_blocks(const TwoWays& pictures, const BlockSettings& set
     for (std::uint32_t row = 0; row < rows; ++row) {
         for (std::uint32_t column = 0; column < columns; ++column) {
             for (int c = 0; c < 3; ++c) {
-                const auto [m1, v1] = moments(pictures.photons, column * settings.side, row * settings.side, settings.side, c);
-                const auto [m2, v2] = moments(pictures.paths, column * settings.side, row * settings.side, settings.side, c);
+                const auto [m1, v1] =
+                    moments(pictures.photons, column * settings.side, row * settings.side, settings.side, c);
+                const auto [m2, v2] =
+                    moments(pictures.paths, column * settings.side, row * settings.side, settings.side, c);
                 const bool counts = std::sqrt(v2) <= settings.noise * m2;
-                const bool differs = counts && p_value(m1 - m2, settings.bias * m2, v1, v2, double(pictures.paths.size())) < each;
+                const bool differs =
+                    counts && p_value(m1 - m2, settings.bias * m2, v1, v2, double(pictures.paths.size())) < each;
                 result.counted += counts ? 1 : 0;
                 result.differing += differs ? 1 : 0;
-                result.table += fmt::format(" {}{:.3f}({:.3f})", differs ? "!" : counts ? "" : "?", m1 / m2, std::sqrt(v1 + v2) / m2);
+                result.table += fmt::format(" {}{:.3f}({:.3f})",
+                                            differs  ? "!"
+                                            : counts ? ""
+                                                     : "?",
+                                            m1 / m2, std::sqrt(v1 + v2) / m2);
             }
         }
         result.table += "\n";

@@ -29,17 +29,17 @@ TwoWays render_two_ways(const Scene& scene, Settings settings, std::uint32_t sam
 TwoWays render_two_ways_extrapolated(const Scene& scene, Settings settings, std::uint32_t samples, std::uint32_t seeds);
 
 struct BlockSettings {
-    std::uint32_t side = 8;       // pixels of a block either way
-    double level = 0.001;         // of the whole picture, Sidak-corrected over blocks and channels
-    double bias = 0.01;           // relative, of a block: what the photon estimate may be off at edges and corners
-    double noise = 1e9;           // relative, of a block's mean by paths: where their standard error is above, they have
-                                  // not converged and the block does not count
+    std::uint32_t side = 8;  // pixels of a block either way
+    double level = 0.001;    // of the whole picture, Sidak-corrected over blocks and channels
+    double bias = 0.01;      // relative, of a block: what the photon estimate may be off at edges and corners
+    double noise = 1e9;      // relative, of a block's mean by paths: where their standard error is above, they have
+                             // not converged and the block does not count
 };
 
 struct BlockComparison {
-    std::size_t counted = 0;      // blocks and channels
-    std::size_t differing = 0;    // those that differ by Welch's test
-    std::string table;            // photons over paths (standard error); !: differs, ?: does not count
+    std::size_t counted = 0;    // blocks and channels
+    std::size_t differing = 0;  // those that differ by Welch's test
+    std::string table;          // photons over paths (standard error); !: differs, ?: does not count
 };
 
 BlockComparison compare_blocks(const TwoWays& pictures, const BlockSettings& settings);
