@@ -110,20 +110,16 @@ void main() {
                 vec4 lobes = lobes_of(bsdf, surface, -state.direction);
                 uint lobe = choose_lobe(lobes, (FEATURES & FEATURE_GLOSS) != 0u ? u.w : u.x, inverse_probability);
                 alive = lobe != LOBE_NONE;
-                if (alive) {
-                    vec3 before = state.direction;
-                    float density;
-                    vec3 weight = sample_lobe(lobe, bsdf, surface, u.xy, false, state.direction, density);
-                    state.power *= weight * inverse_probability;
-                    state.memory &= ~PATH_DIRECT;
-                    if (density != DELTA) {
-                        state.memory &= ~PATH_STRAIGHT;
-                        if ((FEATURES & FEATURE_SMOOTH) != 0u) {
-                            state.power *= shading_correction(surface, before, state.direction);
-                        }
-                    }
-                    state.memory = pass_boundary(state.memory, bsdf, lobe, surface);
+                vec3 before = state.direction;
+                float density;
+                vec3 weight = sample_lobe(lobe, bsdf, surface, u.xy, false, state.direction, density);
+                state.power *= weight * inverse_probability;
+                state.memory &= ~PATH_DIRECT;
+                if (density != DELTA) state.memory &= ~PATH_STRAIGHT;
+                if ((FEATURES & FEATURE_SMOOTH) != 0u && density != DELTA) {
+                    state.power *= shading_correction(surface, before, state.direction);
                 }
+                state.memory = pass_boundary(state.memory, bsdf, lobe, surface);
             }
             float brightest = largest(state.power);
             alive = alive && bounces < params.max_depth && brightest > 0.0;

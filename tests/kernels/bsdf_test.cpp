@@ -68,7 +68,7 @@ std::vector<Case> cases(float roughness) {
     add("diffuse", [](Material&) {});
     add("white metal", [](Material& m) { m.metallic = 1.0f, m.base_color = glm::vec3(1.0f); });
     add("gold", [](Material& m) { m.metallic = 1.0f, m.base_color = {1.0f, 0.78f, 0.36f}; });
-    add("black metal", [](Material& m) { m.metallic = 1.0f, m.base_color = glm::vec3(0.0f); });
+    add("nearly black metal", [](Material& m) { m.metallic = 1.0f, m.base_color = glm::vec3(0.0f, 0.0f, 0.01f); });
     add("coat over diffuse", [](Material& m) { m.specular = 1.0f; });
     add("coat over black", [](Material& m) { m.specular = 1.0f, m.base_color = glm::vec3(0.0f); });
     add("tinted coat", [](Material& m) { m.specular = 0.6f, m.specular_color = {1.0f, 0.5f, 2.0f}, m.ior = 1.8f; });
@@ -85,7 +85,7 @@ std::vector<Case> cases(float roughness) {
         m.transmission = 0.6f, m.thickness = 1.0f, m.metallic = 0.3f, m.specular = 1.0f;
     });
     add("clearcoat over black", [=](Material& m) {
-        m.metallic = 1.0f, m.base_color = glm::vec3(0.0f), m.clearcoat = 1.0f, m.clearcoat_roughness = roughness;
+        m.base_color = glm::vec3(0.0f), m.clearcoat = 1.0f, m.clearcoat_roughness = roughness;
     });
     add("clearcoat over diffuse", [=](Material& m) { m.clearcoat = 0.8f, m.clearcoat_roughness = roughness; });
     add("clearcoat over a rougher metal",
