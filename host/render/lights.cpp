@@ -282,7 +282,7 @@ void add_punctual_lights(const Scene& scene, const FlatScene& flat, std::vector<
 }
 
 void add_environment(const Scene& scene, FlatScene& flat, std::vector<WeighedLight>& lights) {
-    if (!scene.environment || flat.triangles.empty()) return;
+    if (!scene.environment) return;
     const Environment& map = *scene.environment;
     std::vector<double> weights;  // mean channel of radiance times solid angle
     for (std::uint32_t row = 0; row < map.size.height; ++row) {
@@ -296,7 +296,7 @@ void add_environment(const Scene& scene, FlatScene& flat, std::vector<WeighedLig
     flat.environment_size = map.size;
     flat.environment_alias = table.alias;
     for (std::size_t i = 0; i < weights.size(); ++i) flat.environment.emplace_back(map.radiance[i], table.keep[i]);
-    if (!(table.total > 0.0)) return;
+    if (!(table.total > 0.0 && flat.radius > 0.0)) return;
     gpu::Light light{};
     light.kind = LIGHT_ENVIRONMENT;
     const double radius = flat.radius * cover;
