@@ -176,6 +176,22 @@ TEST_F(Eye, PathsEndWhereTheReferenceEndsThem) {
     EXPECT_LT(delicate, 3 * rig.pixels() / 10) << "paths that rounding may decide";
 }
 
+TEST_F(Eye, TheEnvironmentIsSeenWhereThereIsNoTriangle) {
+    Scene scene;
+    scene.environment = Environment{{1, 2}, {{1.0f, 2.0f, 3.0f}, {4.0f, 5.0f, 6.0f}}};
+    add_camera(scene, {0, 0, 0}, {0, 0, -1}, 1.0);
+    Settings settings;
+    settings.size = Extent{4, 4};
+    settings.photons = 16;
+    Rig rig(scene, settings);
+    rig.integrator.run(2);
+    const Image image = rig.integrator.resolve();
+    for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+        EXPECT_LT(glm::distance(image.rgb[i], scene.environment->radiance[i < 8 ? 0 : 1]), 1e-5f)
+            << "pixel " << i << ": " << image.rgb[i].x << ", " << image.rgb[i].y << ", " << image.rgb[i].z;
+    }
+}
+
 TEST_F(Eye, JitterCoversThePixelOverIterations) {
     // A plane across the view: hit positions give the film positions back.
     Scene scene;
