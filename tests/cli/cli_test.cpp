@@ -18,6 +18,7 @@
 #include "io/exr.h"
 #include "support/files.h"
 #include "support/process.h"
+#include "support/scenes.h"
 #include "support/temporary_folder.h"
 
 namespace vkcppm {
@@ -336,6 +337,43 @@ TEST_F(Cli, ASceneIsNeeded) {
         expect_failure(with("text.gltf"), 65, {"text.gltf"}, "text");
         expect_failure(with("cut.gltf"), 65, {"cut.gltf"}, "cut");
         expect_failure(with("empty.glb"), 65, {"empty.glb"}, "empty");
+    }
+}
+
+struct Hostile {
+    const char* file;  // below hostile/ of the scenes that stand beside the project
+    int code;
+    Words told;  // of the error
+};
+
+TEST_F(Cli, HostileFilesHaveTheirExitCodeAndTheirLine) {
+    if (!test::shared_file("hostile")) GTEST_SKIP() << "the hostile files are not there";
+    const std::vector<Hostile> all = {
+        {"assimp/glTF2/MissingBin/BoxTextured.gltf", 65, {"buffers[0]", "BoxTextured0.bin", "no such file"}},
+        {"assimp/glTF2/RecursiveNodes/RecursiveNodes.gltf", 65, {"nodes[0]", "ancestor"}},
+        {"assimp/glTF2/IndexOutOfRange/AllIndicesOutOfRange.gltf", 65, {"accessors", "POSITION"}},
+        {"assimp/glTF2/wrongTypes/badUint.gltf", 65, {"baseColorTexture.index", "-1"}},
+        {"tinygltf/models/BoundsChecking/integer-out-of-bounds.gltf", 65, {"bufferViews[0].byteLength", "1e+300"}},
+        {"glTF-Validator/base/data/glb/chunk_too_big.glb", 65, {"GLB chunk 0"}},
+        {"glTF-Validator/base/data/buffer/non_relative_uri.gltf", 65, {"buffers[0].uri", "http://example.com"}},
+        {"cgltf/TriangleWithoutIndices.gltf", 0, {}},
+        {"tinygltf/models/box01.glb", 0, {}},
+        {"assimp/glTF2/BoxBadNormals-glTF-Binary/BoxBadNormals.glb", 0, {}},
+    };
+    for (const Hostile& hostile : all) {
+        SCOPED_TRACE(hostile.file);
+        const auto file = test::shared_file(std::string("hostile/") + hostile.file);
+        ASSERT_TRUE(file);
+        const auto result = run({file->string(), "-o", "out.exr", "--size", "8x6", "--iterations", "2", "--photons",
+                                 "500", "--quiet"});
+        if (hostile.code == 0) {
+            expect_done(result);
+            EXPECT_FALSE(contains(result.err, "error: ")) << result.err;
+        } else {
+            expect_failure(result, hostile.code, hostile.told, hostile.file);
+            EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
+        }
+        EXPECT_EQ(fs::remove(folder_ / "out.exr"), hostile.code == 0) << "whether there is a picture";
     }
 }
 
