@@ -1,9 +1,11 @@
 #pragma once
 // Scenes by name.
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "scene/gltf.h"
 
@@ -18,6 +20,16 @@ inline Scene project_scene(const std::string& name) {
 inline std::optional<std::filesystem::path> shared_file(const std::string& name) {
     const auto file = std::filesystem::path(VKCPPM_SOURCE_DIR) / ".." / "shared" / "scenes" / name;
     return std::filesystem::exists(file) ? std::optional(file) : std::nullopt;
+}
+
+/// Every .gltf and .glb below a folder, sorted.
+inline std::vector<std::filesystem::path> gltf_files_in(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+        if (entry.path().extension() == ".gltf" || entry.path().extension() == ".glb") files.push_back(entry.path());
+    }
+    std::ranges::sort(files);
+    return files;
 }
 
 }  // namespace vkcppm::test

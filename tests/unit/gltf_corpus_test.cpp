@@ -16,6 +16,7 @@
 
 #include "scene/gltf.h"
 #include "support/files.h"
+#include "support/scenes.h"
 #include "support/thrown.h"
 
 namespace vkcppm {
@@ -25,15 +26,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 const fs::path scenes = fs::path(VKCPPM_SOURCE_DIR) / "../shared/scenes";
-
-std::vector<fs::path> gltf_files_in(const fs::path& folder) {
-    std::vector<fs::path> files;
-    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-        if (entry.path().extension() == ".gltf" || entry.path().extension() == ".glb") files.push_back(entry.path());
-    }
-    std::ranges::sort(files);
-    return files;
-}
 
 #define SKIP_WITHOUT(folder) \
     if (!fs::is_directory(folder)) GTEST_SKIP() << folder << " is not there"
@@ -114,7 +106,7 @@ void expect_recorded_lines(const fs::path& folder) {
     for (const json& group : json::parse(test::read_bytes(record))) {
         for (const json& file : group["files"]) recorded[scenes / file.get<std::string>()] = group["lines"];
     }
-    const std::vector<fs::path> files = gltf_files_in(folder);
+    const std::vector<fs::path> files = test::gltf_files_in(folder);
     EXPECT_FALSE(files.empty());
     for (const fs::path& file : files) {
         SCOPED_TRACE(file);
@@ -177,7 +169,7 @@ TEST(GltfCorpus, TextureTransformTestPointsItsArrowAtTheMark) {
 
 TEST(GltfCorpus, NegativeScaleKeepsFrontsAndNormalsOnOneSide) {
     SKIP_WITHOUT(scenes / "asset-generator/Node_NegativeScale");
-    for (const fs::path& file : gltf_files_in(scenes / "asset-generator/Node_NegativeScale")) {
+    for (const fs::path& file : test::gltf_files_in(scenes / "asset-generator/Node_NegativeScale")) {
         const Scene scene = load_gltf(file);
         std::size_t opposed = 0;
         for (const Triangle& triangle : scene.triangles) {
@@ -196,7 +188,7 @@ TEST(GltfCorpus, NegativeScaleKeepsFrontsAndNormalsOnOneSide) {
 TEST(GltfCorpus, HostileFilesGiveASceneOrAnError) {
     SKIP_WITHOUT(scenes / "hostile");
     std::size_t refused = 0;
-    const std::vector<fs::path> files = gltf_files_in(scenes / "hostile");
+    const std::vector<fs::path> files = test::gltf_files_in(scenes / "hostile");
     for (const fs::path& file : files) {
         SCOPED_TRACE(file);
         const auto error = test::thrown_by([&] { expect_sound(load_gltf(file)); });  // anything else ends the test
