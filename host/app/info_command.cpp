@@ -152,12 +152,13 @@ std::string json_text(const Scene& scene, const std::vector<Feature>& features) 
     json["bounds"] = bounds ? Json{{"min", json_of(bounds->low)}, {"max", json_of(bounds->high)}} : Json();
     json["materials"] = Json::array();
     const std::vector<std::size_t> triangles = triangles_by_material(scene);
+    const std::vector<SurfaceTraits> traits = traits_of(scene);
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& material = scene.materials[i];
         json["materials"].push_back({{"name", material.name},
                                      {"triangles", triangles[i]},
                                      {"emission", json_of(material.emission)},
-                                     {"treatment", describe_material(scene, material)}});
+                                     {"treatment", describe_material(material, traits[i])}});
     }
     json["images"] = Json::array();
     for (const TextureImage& image : scene.images) {
@@ -193,10 +194,11 @@ std::string plain_text(const Scene& scene, const std::vector<Feature>& features)
     fmt::format_to(out, "vertices with {}\n", fmt::join(vertex_attributes(scene), ", "));
     fmt::format_to(out, "{} materials\n", scene.materials.size());
     const std::vector<std::size_t> triangles = triangles_by_material(scene);
+    const std::vector<SurfaceTraits> traits = traits_of(scene);
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& material = scene.materials[i];
         fmt::format_to(out, "  {} '{}', {} triangles: {}\n", i, material.name, triangles[i],
-                       describe_material(scene, material));
+                       describe_material(material, traits[i]));
     }
     fmt::format_to(out, "{} images\n", scene.images.size());
     for (std::size_t i = 0; i < scene.images.size(); ++i) {

@@ -13,9 +13,9 @@ namespace {
 /// Adds features with their reason, in the order of the calls.
 class Collector {
 public:
-    explicit Collector(const Scene& scene) : scene_(scene), used_(scene.materials.size(), false) {
+    Collector(const Scene& scene, const std::vector<SurfaceTraits>& traits)
+        : scene_(scene), traits_(traits), used_(scene.materials.size(), false) {
         for (const Triangle& triangle : scene.triangles) used_[triangle.material] = true;
-        for (const Material& material : scene.materials) traits_.push_back(traits_of(scene, material));
     }
 
     /// Where any material on a triangle has the trait.
@@ -45,27 +45,26 @@ public:
     }
 
     bool has(std::uint32_t bit) const { return (bits_of(features_) & bit) != 0; }
-    const std::vector<SurfaceTraits>& traits() const { return traits_; }
     std::vector<Feature> take() { return std::move(features_); }
 
 private:
     const Scene& scene_;
+    const std::vector<SurfaceTraits>& traits_;
     std::vector<bool> used_;
-    std::vector<SurfaceTraits> traits_;
     std::vector<Feature> features_;
 };
 
 }  // namespace
 
-std::vector<Feature> features_of(const Scene& scene, const FlatScene& flat) {
+std::vector<Feature> features_of(const Scene& scene, const std::vector<SurfaceTraits>& traits, const FlatScene& flat) {
     using Traits = const SurfaceTraits&;
     using Kind = PunctualLight::Kind;
-    Collector collect(scene);
+    Collector collect(scene, traits);
     collect.material(FEATURE_REFLECTION, "reflection", [](Traits t) { return t.reflects(); });
     collect.material(FEATURE_TRANSMISSION, "transmission", [](Traits t) { return t.glass; });
     std::size_t smooth = 0;
     for (const gpu::TriangleShading& shading : flat.shading) {
-        const Traits t = collect.traits()[shading.material & ~SHADING_FLAT];
+        const Traits t = traits[shading.material & ~SHADING_FLAT];
         if (t.gathers() && (t.normal_map || (shading.material & SHADING_FLAT) == 0)) ++smooth;
     }
     if (smooth > 0) {

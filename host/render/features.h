@@ -8,12 +8,13 @@
 #include "render/feature.h"
 #include "render/flatten.h"
 #include "render/settings.h"
+#include "render/surface.h"
 #include "scene/scene.h"
 
 namespace vkcppm {
 
-/// The features of a scene, in the order of their bits. `flat` must be whole but for its features.
-std::vector<Feature> features_of(const Scene& scene, const FlatScene& flat);
+/// The features of a scene, in the order of their bits. traits: of its materials. `flat` must be whole but for its features.
+std::vector<Feature> features_of(const Scene& scene, const std::vector<SurfaceTraits>& traits, const FlatScene& flat);
 
 /// Those that settings ask for.
 std::vector<Feature> features_of(const Settings& settings);

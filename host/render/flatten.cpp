@@ -145,14 +145,15 @@ FlatScene flatten(const Scene& scene) {
     }
     flat.frame = make_frame(scene);
     TextureTable textures(scene);
-    for (const Material& material : scene.materials) {
-        flat.materials.push_back(surface_of(scene, material, flat.frame.scale, textures));
+    const std::vector<SurfaceTraits> traits = traits_of(scene);
+    for (std::size_t i = 0; i < traits.size(); ++i) {
+        flat.materials.push_back(surface_of(scene.materials[i], traits[i], flat.frame.scale, textures));
     }
     flat.textures = textures.lookups();
     flat.texels = textures.texels();
     add_triangles(scene, flat);
     add_lights(scene, flat);
-    flat.features = features_of(scene, flat);
+    flat.features = features_of(scene, traits, flat);
     add_attributes(scene, flat);
     return flat;
 }

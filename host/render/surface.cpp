@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "scene/alpha.h"
 #include "scene/glass.h"
 
 namespace vkcppm {
@@ -19,14 +20,6 @@ const glm::vec3 black(0.0f), white(1.0f);
 
 std::string text(const glm::vec3& v) {
     return v.x == v.y && v.y == v.z ? fmt::format("{:g}", v.x) : fmt::format("({:g}, {:g}, {:g})", v.x, v.y, v.z);
-}
-
-bool partly_there(const Scene& scene, const Material& material) {
-    if (material.alpha == Material::Alpha::opaque) return false;
-    const bool image = material.base_color_texture && has_alpha(scene.images.at(material.base_color_texture->image));
-    const bool vertices =
-        std::any_of(scene.colors.begin(), scene.colors.end(), [](const glm::vec4& c) { return c.a < 1.0f; });
-    return material.opacity < 1.0f || image || vertices;
 }
 
 /// A metal that is black all over: what exporters leave under a lamp. Schlick's white edge would have rays trace it, and
@@ -57,10 +50,10 @@ std::array<NamedTexture, TEXTURE_COUNT> textures_of(const Material& m) {
 
 }  // namespace
 
-SurfaceTraits traits_of(const Scene& scene, const Material& m) {
+SurfaceTraits traits_of(const Material& m, float least_alpha) {
     SurfaceTraits t;
     t.unlit = m.unlit;
-    t.alpha = partly_there(scene, m);
+    t.alpha = is_partly_there(m, least_alpha);
     t.emits = m.emission != black;
     const auto textures = textures_of(m);
     t.textured =
@@ -82,8 +75,14 @@ SurfaceTraits traits_of(const Scene& scene, const Material& m) {
     return t;
 }
 
-gpu::SurfaceMaterial surface_of(const Scene& scene, const Material& m, double scale, TextureTable& table) {
-    const SurfaceTraits traits = traits_of(scene, m);
+std::vector<SurfaceTraits> traits_of(const Scene& scene) {
+    const std::vector<float> alphas = least_alphas(scene);
+    std::vector<SurfaceTraits> traits;
+    for (std::size_t i = 0; i < alphas.size(); ++i) traits.push_back(traits_of(scene.materials[i], alphas[i]));
+    return traits;
+}
+
+gpu::SurfaceMaterial surface_of(const Material& m, const SurfaceTraits& traits, double scale, TextureTable& table) {
     gpu::SurfaceMaterial surface{};
     surface.color = m.base_color;
     surface.emission = m.emission;
@@ -119,8 +118,7 @@ gpu::SurfaceMaterial surface_of(const Scene& scene, const Material& m, double sc
     return surface;
 }
 
-std::string describe_material(const Scene& scene, const Material& m) {
-    const SurfaceTraits t = traits_of(scene, m);
+std::string describe_material(const Material& m, const SurfaceTraits& t) {
     std::vector<std::string> parts;
     const auto roughness = [](float r) { return r > 0.0f ? fmt::format("roughness {:g}", r) : std::string("smooth"); };
     if (t.unlit) parts.push_back(fmt::format("unlit, seen as {}", text(m.base_color)));

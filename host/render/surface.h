@@ -2,6 +2,7 @@
 // How the kernels treat a glTF material: the one place where its factors and textures become a surface.
 
 #include <string>
+#include <vector>
 
 #include "render/textures.h"
 #include "scene/scene.h"
@@ -31,12 +32,17 @@ struct SurfaceTraits {
     bool is_rough() const { return (rough && (metal || coat || glass)) || rough_clearcoat; }
 };
 
-SurfaceTraits traits_of(const Scene& scene, const Material& material);
+/// least_alpha: as of least_alphas() in scene/alpha.h.
+SurfaceTraits traits_of(const Material& material, float least_alpha);
+
+/// [materials] Those of every material of the scene.
+std::vector<SurfaceTraits> traits_of(const Scene& scene);
 
 /// The surface that stands for the material. scale: frame units a metre. Its textures are added to `textures`.
-gpu::SurfaceMaterial surface_of(const Scene& scene, const Material& material, double scale, TextureTable& textures);
+gpu::SurfaceMaterial surface_of(const Material& material, const SurfaceTraits& traits, double scale,
+                                TextureTable& textures);
 
 /// One line for `vkcppm info`: the lobes, their parameters, textures, emission.
-std::string describe_material(const Scene& scene, const Material& material);
+std::string describe_material(const Material& material, const SurfaceTraits& traits);
 
 }  // namespace vkcppm

@@ -84,11 +84,4 @@ std::uint32_t wrapped_texel(std::int64_t i, std::uint32_t size, Texture::Wrap wr
     return std::uint32_t(place < n ? place : period - 1 - place);
 }
 
-bool has_alpha(const TextureImage& image) {
-    for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
-        if (image.rgba[i] != 255) return true;
-    }
-    return false;
-}
-
 }  // namespace vkcppm

@@ -39,7 +39,4 @@ glm::vec4 texel_of(const TextureImage& image, std::uint32_t x, std::uint32_t y, 
 /// The texel of an image of `size` texels along an axis that stands at index i, which may be anywhere.
 std::uint32_t wrapped_texel(std::int64_t i, std::uint32_t size, Texture::Wrap wrap);
 
-/// True where the alpha of the image is below 1 anywhere.
-bool has_alpha(const TextureImage& image);
-
 }  // namespace vkcppm

@@ -10,6 +10,7 @@
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 
+#include "scene/alpha.h"
 #include "scene/glass.h"
 #include "scene/shell.h"
 #include "scene/warnings.h"
@@ -159,37 +160,18 @@ private:
         }
     }
 
-    /// Whether alpha lets light through somewhere: the least that factor, texture and vertex colours can give.
     void check_alpha() {
         std::vector<std::optional<std::uint32_t>> first(scene_.materials.size());
-        std::vector<float> vertex_alpha(scene_.materials.size(), 1.0f);
-        for (std::size_t i = scene_.triangles.size(); i-- > 0;) {
-            const Triangle& triangle = scene_.triangles[i];
-            first[triangle.material] = std::uint32_t(i);
-            if (scene_.colors.empty()) continue;
-            for (const std::uint32_t vertex : triangle.vertex) {
-                vertex_alpha[triangle.material] = std::min(vertex_alpha[triangle.material], scene_.colors[vertex].a);
-            }
-        }
+        for (std::size_t i = scene_.triangles.size(); i-- > 0;) first[scene_.triangles[i].material] = std::uint32_t(i);
+        const std::vector<float> alphas = least_alphas(scene_);
         for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
             const Material& material = scene_.materials[i];
-            if (!first[i] || !is_glass(material) || material.alpha == Material::Alpha::opaque) continue;
-            const bool blend = material.alpha == Material::Alpha::blend;
-            const float alpha = material.opacity * texture_alpha(material) * vertex_alpha[i];
-            if (alpha >= (blend ? 1.0f : material.alpha_cutoff)) continue;
+            if (!first[i] || !is_glass(material) || !is_partly_there(material, alphas[i])) continue;
             warnings_.add("glass with alpha: where alpha takes it away, light passes straight on; transmission alone "
                           "makes it clear",
                           fmt::format("{}, alphaMode {}, alpha down to {:.3g}", triangle_name(*first[i]),
-                                      blend ? "BLEND" : "MASK", alpha));
+                                      material.alpha == Material::Alpha::blend ? "BLEND" : "MASK", alphas[i]));
         }
-    }
-
-    float texture_alpha(const Material& material) const {
-        if (!material.base_color_texture) return 1.0f;
-        const std::vector<std::uint8_t>& rgba = scene_.images[material.base_color_texture->image].rgba;
-        std::uint8_t least = 255;
-        for (std::size_t i = 3; i < rgba.size(); i += 4) least = std::min(least, rgba[i]);
-        return least / 255.0f;
     }
 
     // ---- lights ----

@@ -81,7 +81,7 @@ float below_coat(Bsdf b, float cosine) {
     return 1.0 - (b.coat0 + (b.coat90 - b.coat0) * schlick_power(cosine));
 }
 
-// ior: index of the material for this path's wavelength. inside: the ray comes from within a solid.
+// ior: index of the material for this path's wavelength. front: the ray comes from outside.
 Bsdf bsdf_of(SurfaceMaterial material, float ior, bool front) {
     Bsdf b;
     b.thin = (FEATURES & FEATURE_THIN) != 0u && has(material, SURFACE_THIN);
@@ -138,6 +138,12 @@ float smith_lambda(float alpha, float cosine) {
 }
 
 float smith_g1(float alpha, float cosine) { return 1.0 / (1.0 + smith_lambda(alpha, cosine)); }
+
+// G2 / G1(wo): what the masking of wi leaves of a direction sampled by visible normals.
+float smith_masking(float alpha, float wo_n, float wi_n) {
+    float lambda = smith_lambda(alpha, wo_n);
+    return (1.0 + lambda) / (1.0 + lambda + smith_lambda(alpha, wi_n));
+}
 
 // A microfacet normal seen from wo, in proportion to its visible area (Dupuy and Benyoub 2023), about +z.
 vec3 sample_visible_normal(float alpha, vec3 wo, vec2 u) {
@@ -243,8 +249,7 @@ vec3 sample_lobe(uint lobe, Bsdf b, Surface surface, vec2 u, bool radiance, inou
             float wi_n = dot(direction, n);
             if (wi_n <= 0.0 || dot(direction, surface.geometric) <= 0.0) return vec3(0.0);
             density = reflection_pdf(alpha, n, wo, h);
-            float lambda = smith_lambda(alpha, wo_n);
-            masking = (1.0 + lambda) / (1.0 + lambda + smith_lambda(alpha, wi_n));
+            masking = smith_masking(alpha, wo_n, wi_n);
         } else {
             direction = mirror_direction(direction, n, surface.geometric);
         }
@@ -260,8 +265,7 @@ vec3 sample_lobe(uint lobe, Bsdf b, Surface surface, vec2 u, bool radiance, inou
             direction = normalize(mirrored - 2.0 * wi_n * n);
             if (wi_n <= 0.0 || dot(direction, surface.geometric) >= 0.0) return vec3(0.0);
             density = reflection_pdf(alpha, n, wo, h);
-            float lambda = smith_lambda(alpha, wo_n);
-            weight *= (1.0 + lambda) / (1.0 + lambda + smith_lambda(alpha, wi_n));
+            weight *= smith_masking(alpha, wo_n, wi_n);
         }
         return weight;
     }
@@ -275,8 +279,7 @@ vec3 sample_lobe(uint lobe, Bsdf b, Surface surface, vec2 u, bool radiance, inou
         float wi_n = -dot(direction, n);
         if (wi_n <= 0.0 || dot(direction, surface.geometric) >= 0.0) return vec3(0.0);
         density = refraction_pdf(alpha, n, wo_n, h, b.eta, wo_h, cosine_t);
-        float lambda = smith_lambda(alpha, wo_n);
-        return weight * ((1.0 + lambda) / (1.0 + lambda + smith_lambda(alpha, wi_n)));
+        return weight * smith_masking(alpha, wo_n, wi_n);
     }
     // Shading normals can bend a refracted ray back to its own side: it then goes on along the surface's far side.
     if (dot(refracted, surface.geometric) < 0.0) direction = refracted;
@@ -303,10 +306,12 @@ float followed_weight(float density, float cosine) {
 #define PART_GATHERED 1u  // photons' share of light that eye paths find too
 #define PART_FOLLOWED 2u  // that of eye paths: rough lobes alone
 
-float weight_of(uint part, float density, float cosine) {
-    if (part == PART_ALL) return 1.0;
-    float followed = followed_weight(density, cosine);
-    return part == PART_FOLLOWED ? followed : 1.0 - followed;
+// A rough lobe without its Fresnel term, times the weight of the part. density: of wi when it is sampled from wo by
+// visible normals; f cos / density is the masking then. Cosines to the lobe's own normal, that of wi of either sign.
+float rough_lobe(uint part, float alpha, float density, float wo_n, float wi_n) {
+    float followed = followed_weight(density, wi_n);
+    float weight = part == PART_ALL ? 1.0 : part == PART_FOLLOWED ? followed : 1.0 - followed;
+    return density * smith_masking(alpha, wo_n, wi_n) * weight / abs(wi_n);
 }
 
 // Light that arrives from wi and is scattered to wo, without the cosine: all lobes of width above 0, each with the weight
@@ -323,10 +328,8 @@ vec3 rough_bsdf(Bsdf b, Surface surface, vec3 wo, vec3 wi, uint part) {
         float below = below_clearcoat(b, wo_h);
         if (part != PART_FOLLOWED) sum = b.diffuse * (below_coat(b, wo_h) * below / PI);
         if ((FEATURES & FEATURE_ROUGH) != 0u && b.alpha > 0.0) {
-            float lambda = smith_lambda(b.alpha, wo_n);
-            float f = ggx(b.alpha, n, h) / (4.0 * wo_n * wi_n * (1.0 + lambda + smith_lambda(b.alpha, wi_n)));
-            float weight = weight_of(part, reflection_pdf(b.alpha, n, wo, h), wi_n);
-            sum += facet_reflectance(b, wo_h) * (below * f * weight);
+            float lobe = rough_lobe(part, b.alpha, reflection_pdf(b.alpha, n, wo, h), wo_n, wi_n);
+            sum += facet_reflectance(b, wo_h) * (below * lobe);
         }
     }
     if ((FEATURES & FEATURE_ROUGH) != 0u && (FEATURES & FEATURE_CLEARCOAT) != 0u && b.clearcoat_alpha > 0.0 && reflects) {
@@ -335,12 +338,10 @@ vec3 rough_bsdf(Bsdf b, Surface surface, vec3 wo, vec3 wi, uint part) {
         float wi_c = dot(wi, c);
         if (wi_c > 0.0) {
             vec3 h = normalize(wo + wi);
-            float lambda = smith_lambda(b.clearcoat_alpha, wo_c);
-            float f = ggx(b.clearcoat_alpha, c, h) /
-                      (4.0 * wo_c * wi_c * (1.0 + lambda + smith_lambda(b.clearcoat_alpha, wi_c)));
-            float weight = weight_of(part, reflection_pdf(b.clearcoat_alpha, c, wo, h), wi_c);
+            float density = reflection_pdf(b.clearcoat_alpha, c, wo, h);
+            float lobe = rough_lobe(part, b.clearcoat_alpha, density, wo_c, wi_c);
             // The flux of a photon counts by the base's normal; the coat has one of its own.
-            sum += vec3(clearcoat_fresnel(b, min(1.0, dot(wo, h))) * f * weight * (wi_n > 0.0 ? wi_c / wi_n : 0.0));
+            sum += vec3(clearcoat_fresnel(b, min(1.0, dot(wo, h))) * lobe * (wi_n > 0.0 ? wi_c / wi_n : 0.0));
         }
     }
     if ((FEATURES & FEATURE_ROUGH) != 0u && (FEATURES & FEATURE_TRANSMISSION) != 0u && b.alpha > 0.0 && !reflects &&
@@ -349,10 +350,8 @@ vec3 rough_bsdf(Bsdf b, Surface surface, vec3 wo, vec3 wi, uint part) {
         if (b.thin) {
             vec3 mirrored = wi - 2.0 * wi_n * n;
             vec3 h = normalize(wo + mirrored);
-            float lambda = smith_lambda(b.alpha, wo_n);
-            float f = ggx(b.alpha, n, h) / (4.0 * wo_n * -wi_n * (1.0 + lambda + smith_lambda(b.alpha, wi_n)));
-            float weight = weight_of(part, reflection_pdf(b.alpha, n, wo, h), wi_n);
-            sum += tint * (facet_transmittance(b, min(1.0, dot(wo, h))) * f * weight);
+            float lobe = rough_lobe(part, b.alpha, reflection_pdf(b.alpha, n, wo, h), wo_n, wi_n);
+            sum += tint * (facet_transmittance(b, min(1.0, dot(wo, h))) * lobe);
         } else if (b.eta != 1.0) {
             vec3 h = normalize(b.eta * wo + wi);
             if (dot(h, n) < 0.0) h = -h;
@@ -360,11 +359,8 @@ vec3 rough_bsdf(Bsdf b, Surface surface, vec3 wo, vec3 wi, uint part) {
             float wi_h = dot(wi, h);
             if (wo_h > 0.0 && wi_h < 0.0) {
                 float density = refraction_pdf(b.alpha, n, wo_n, h, b.eta, wo_h, -wi_h);
-                float lambda = smith_lambda(b.alpha, wo_n);
-                float masking = (1.0 + lambda) / (1.0 + lambda + smith_lambda(b.alpha, wi_n));
-                float f = density * masking * b.eta * b.eta / -wi_n;
-                float weight = weight_of(part, density, wi_n);
-                sum += tint * (facet_transmittance(b, min(1.0, wo_h)) * f * weight);
+                float lobe = b.eta * b.eta * rough_lobe(part, b.alpha, density, wo_n, wi_n);
+                sum += tint * (facet_transmittance(b, min(1.0, wo_h)) * lobe);
             }
         }
     }

@@ -169,7 +169,7 @@ protected:
                                      const std::vector<gpu::BsdfInput>& inputs, bool follow) {
         const Scene scene;
         TextureTable textures(scene);
-        probe_.input(BIND_MATERIALS, std::vector{surface_of(scene, material, 1.0, textures)},
+        probe_.input(BIND_MATERIALS, std::vector{surface_of(material, traits_of(material, 1.0f), 1.0, textures)},
                      Buffer::Kind::uint_texels);
         probe_.input(PROBE_VIEW, std::vector{view});
         probe_.input(PROBE_INPUT, inputs);
