@@ -21,22 +21,20 @@ std::string json_text(const CompareOptions& options, const Comparison& compariso
     json["image_non_finite"] = comparison.image_non_finite;
     json["reference_non_finite"] = comparison.reference_non_finite;
     json["mean_ratio"] = {ratio.r, ratio.g, ratio.b};
-    json["mse"] = comparison.mse;
-    json["relmse"] = comparison.relative_mse;
-    json["relmse_trimmed"] = comparison.trimmed_relative_mse;
-    json["srgb_mse"] = comparison.srgb_mse;
+    for (const Metric& metric : metrics()) {
+        json[std::string(metric.name)] = metric.of(comparison);
+    }
     json["psnr"] = comparison.psnr;
     return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 std::string plain_text(const Comparison& comparison) {
     const glm::dvec3& ratio = comparison.mean_ratio;
-    return fmt::format("{:<32}{:.6f} {:.6f} {:.6f}\n", "mean ratio R G B", ratio.r, ratio.g, ratio.b) +
-           fmt::format("{:<32}{:.6g}\n", "MSE", comparison.mse) +
-           fmt::format("{:<32}{:.6g}\n", "relMSE (eps 0.01)", comparison.relative_mse) +
-           fmt::format("{:<32}{:.6g}\n", "relMSE without the worst 0.1 %", comparison.trimmed_relative_mse) +
-           fmt::format("{:<32}{:.6g}\n", "8-bit sRGB MSE", comparison.srgb_mse) +
-           fmt::format("{:<32}{:.2f} dB\n", "PSNR (8-bit sRGB)", comparison.psnr);
+    std::string text = fmt::format("{:<40}{:.6f} {:.6f} {:.6f}\n", "mean ratio R G B", ratio.r, ratio.g, ratio.b);
+    for (const Metric& metric : metrics()) {
+        text += fmt::format("{:<40}{:.6g}\n", metric.title, metric.of(comparison));
+    }
+    return text + fmt::format("{:<40}{:.2f} dB\n", "PSNR (8-bit sRGB)", comparison.psnr);
 }
 
 }  // namespace

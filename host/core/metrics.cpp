@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -19,8 +20,17 @@ bool finite(const glm::vec3& pixel) {
     return std::isfinite(pixel.r) && std::isfinite(pixel.g) && std::isfinite(pixel.b);
 }
 
-double mean(const std::vector<double>& values, std::size_t count) {
-    return std::accumulate(values.begin(), values.begin() + std::ptrdiff_t(count), 0.0) / double(count);
+/// Mean of the pixels' values, and without the largest. values [pixels], reordered.
+Measure measure(std::vector<double> values) {
+    const auto mean = [&](std::size_t count) {
+        return std::accumulate(values.begin(), values.begin() + std::ptrdiff_t(count), 0.0) / double(count);
+    };
+    Measure result;
+    result.all = mean(values.size());
+    const std::size_t kept = values.size() - values.size() / trimmed_one_in;
+    std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(kept), values.end());
+    result.trimmed = mean(kept);
+    return result;
 }
 
 std::string text(const Extent& extent) {
@@ -38,8 +48,10 @@ Comparison compare(const Image& image, const Image& reference) {
     result.extent = image.extent;
     glm::dvec3 image_sum{0.0};
     glm::dvec3 reference_sum{0.0};
-    std::vector<double> relative;  // [pixels compared] mean over the channels
-    relative.reserve(image.rgb.size());
+    std::vector<double> squares, relatives, ratios, levels;  // [pixels compared] means over the channels
+    for (std::vector<double>* values : {&squares, &relatives, &ratios, &levels}) {
+        values->reserve(image.rgb.size());
+    }
     for (std::size_t i = 0; i < image.rgb.size(); ++i) {
         const bool image_finite = finite(image.rgb[i]);
         const bool reference_finite = finite(reference.rgb[i]);
@@ -48,30 +60,62 @@ Comparison compare(const Image& image, const Image& reference) {
         if (!image_finite || !reference_finite) {
             continue;
         }
-        double relative_pixel = 0.0;
+        double square = 0.0, relative = 0.0, ratio = 0.0, level = 0.0;
         for (int c = 0; c < 3; ++c) {
             const double x = image.rgb[i][c];
             const double r = reference.rgb[i][c];
             const double squared = (x - r) * (x - r);
-            const double levels = double(srgb_byte(x)) - double(srgb_byte(r));
+            const double size = std::abs(x) + std::abs(r);
+            const double step = double(srgb_byte(x)) - double(srgb_byte(r));
             image_sum[c] += x;
             reference_sum[c] += r;
-            result.mse += squared;
-            result.srgb_mse += levels * levels;
-            relative_pixel += squared / (r * r + relative_epsilon);
+            square += squared / 3.0;
+            relative += squared / (r * r + relative_epsilon) / 3.0;
+            ratio += size > 0.0 ? std::abs(x - r) / size / 3.0 : 0.0;
+            level += step * step / 3.0;
         }
-        relative.push_back(relative_pixel / 3.0);
+        squares.push_back(square);
+        relatives.push_back(relative);
+        ratios.push_back(ratio);
+        levels.push_back(level);
     }
-    result.pixels = relative.size();
+    result.pixels = squares.size();
     result.mean_ratio = image_sum / reference_sum;
-    result.mse /= 3.0 * double(result.pixels);
-    result.srgb_mse /= 3.0 * double(result.pixels);
-    result.psnr = 10.0 * std::log10(255.0 * 255.0 / result.srgb_mse);
-    result.relative_mse = mean(relative, result.pixels);
-    const std::size_t kept = result.pixels - result.pixels / trimmed_one_in;
-    std::nth_element(relative.begin(), relative.begin() + std::ptrdiff_t(kept), relative.end());
-    result.trimmed_relative_mse = mean(relative, kept);
+    result.mse = measure(std::move(squares));
+    result.rmse = {std::sqrt(result.mse.all), std::sqrt(result.mse.trimmed)};
+    result.relmse = measure(std::move(relatives));
+    result.smape = measure(std::move(ratios));
+    result.srgb_mse = measure(std::move(levels));
+    result.psnr = 10.0 * std::log10(255.0 * 255.0 / result.srgb_mse.all);
     return result;
+}
+
+std::span<const Metric> metrics() {
+    static constexpr Metric table[] = {
+        {"mse", "MSE", &Comparison::mse, &Measure::all},
+        {"mse_trimmed", "MSE without the worst 0.1 %", &Comparison::mse, &Measure::trimmed},
+        {"rmse", "RMSE", &Comparison::rmse, &Measure::all},
+        {"rmse_trimmed", "RMSE without the worst 0.1 %", &Comparison::rmse, &Measure::trimmed},
+        {"relmse", "relMSE (eps 0.01)", &Comparison::relmse, &Measure::all},
+        {"relmse_trimmed", "relMSE without the worst 0.1 %", &Comparison::relmse, &Measure::trimmed},
+        {"smape", "SMAPE", &Comparison::smape, &Measure::all},
+        {"smape_trimmed", "SMAPE without the worst 0.1 %", &Comparison::smape, &Measure::trimmed},
+        {"srgb_mse", "8-bit sRGB MSE", &Comparison::srgb_mse, &Measure::all},
+        {"srgb_mse_trimmed", "8-bit sRGB MSE without the worst 0.1 %", &Comparison::srgb_mse, &Measure::trimmed},
+    };
+    return table;
+}
+
+const Metric& find_metric(std::string_view option, std::string_view name) {
+    std::string names;
+    for (const Metric& metric : metrics()) {
+        if (metric.name == name) {
+            return metric;
+        }
+        names += (names.empty() ? "" : ", ") + std::string(metric.name);
+    }
+    throw Error(ExitCode::usage,
+                std::string(option) + ": '" + std::string(name) + "' is no metric: there are " + names);
 }
 
 }  // namespace vkcppm

@@ -2,12 +2,20 @@
 // How far a picture is from its reference, in the measures that the field uses.
 
 #include <cstddef>
+#include <span>
+#include <string_view>
 
 #include <glm/vec3.hpp>
 
 #include "core/image.h"
 
 namespace vkcppm {
+
+/// A mean of squared or relative errors over pixels.
+struct Measure {
+    double all = 0.0;
+    double trimmed = 0.0;  // without the floor(pixels / 1000) pixels where it is largest
+};
 
 /// Means run over the pixels that are finite in both pictures, and over channels where not said otherwise.
 /// x is the image's value, r the reference's. Without any such pixel every measure is NaN.
@@ -17,14 +25,30 @@ struct Comparison {
     std::size_t reference_non_finite = 0;  // the same in the reference
     std::size_t pixels = 0;                // pixels compared: finite in both
     glm::dvec3 mean_ratio{0.0};            // mean(x) / mean(r) a channel; infinite or NaN where the reference is black
-    double mse = 0.0;                      // mean((x - r)^2)
-    double relative_mse = 0.0;             // mean((x - r)^2 / (r^2 + 0.01))
-    double trimmed_relative_mse = 0.0;     // the same without the floor(pixels / 1000) pixels where it is largest
-    double srgb_mse = 0.0;                 // mean((X - R)^2) of the 8-bit sRGB encodings, 0..255^2
-    double psnr = 0.0;                     // dB, 10 log10(255^2 / srgb_mse); infinite where srgb_mse is 0
+    Measure mse;                           // (x - r)^2, (W m^-2 sr^-1)^2
+    Measure rmse;                          // the square root of mse, W m^-2 sr^-1
+    Measure relmse;                        // (x - r)^2 / (r^2 + 0.01)
+    Measure smape;                         // |x - r| / (|x| + |r|), 0 where both are 0: 0..1
+    Measure srgb_mse;                      // (X - R)^2 of the 8-bit sRGB encodings, 0..255^2
+    double psnr = 0.0;                     // dB, 10 log10(255^2 / srgb_mse.all); infinite where that is 0
 };
 
 /// Throws Error(usage) where the sizes differ.
 Comparison compare(const Image& image, const Image& reference);
+
+/// A measure by its name on the command line and in files, "relmse" or "relmse_trimmed"; smaller is nearer.
+struct Metric {
+    std::string_view name;
+    std::string_view title;  // for people
+    Measure Comparison::*measure;
+    double Measure::*part;
+    double of(const Comparison& comparison) const { return (comparison.*measure).*part; }
+};
+
+/// All of them, in the order in which they are told.
+std::span<const Metric> metrics();
+
+/// Throws Error(usage) with the names that there are; `option` is what asked for it.
+const Metric& find_metric(std::string_view option, std::string_view name);
 
 }  // namespace vkcppm

@@ -354,6 +354,14 @@ void Integrator::run_from_grid() {
     unblock();
 }
 
+double Integrator::seconds() const {
+    double sum = 0.0;
+    for (const PassReport& pass : passes_) {
+        if (pass.name != "resolve") sum += pass.device_seconds;
+    }
+    return sum;
+}
+
 void Integrator::fill(Report& report) const {
     report.passes = passes_;
     std::erase_if(report.passes, [](const PassReport& pass) { return pass.calls == 0; });

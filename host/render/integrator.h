@@ -39,6 +39,9 @@ public:
     /// Totals so far: passes, iterations, paths, photons, rays, device memory.
     void fill(Report& report) const;
 
+    /// The clock of core/curve.h: device time of the passes so far; resolve() is not on it.
+    double seconds() const;
+
     /// Contributions that were not finite and were dropped.
     std::uint64_t invalid() const { return invalid_; }
 

@@ -48,7 +48,7 @@ TEST_P(Golden, Picture) {
     const Image image = rig.integrator.resolve();
     const Image reference = read_exr(folder / (name + ".exr"));
     const Comparison found = compare(image, reference);
-    EXPECT_LE(found.relative_mse, golden["tolerance"].get<double>());
+    EXPECT_LE(found.relmse.all, golden["tolerance"].get<double>());
     if (HasFailure()) {
         const auto written = std::filesystem::temp_directory_path() / ("golden_" + name);
         write_exr(written.string() + ".exr", image);
