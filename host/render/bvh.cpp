@@ -190,7 +190,7 @@ class Collapser {
 public:
     explicit Collapser(const std::vector<BinaryNode>& binary) : binary_(binary) {}
 
-    /// Emits the four-wide node of the binary node and all below; returns the stack entries it can need.
+    /// Emits the four-wide node of the binary node and all below; returns the groups of children that can wait.
     std::uint32_t emit(std::uint32_t root) {
         const std::uint32_t index = std::uint32_t(nodes.size());
         nodes.emplace_back();
@@ -221,7 +221,9 @@ public:
         std::uint32_t need = 0;
         for (int c = 0; c < count; ++c) {
             const BinaryNode& child = binary_[children[c]];
+            nodes[index].exponents |= 1u << (24 + c);
             if (child.count > 0) {
+                nodes[index].exponents |= 1u << (28 + c);
                 nodes[index].child[c] = BVH_LEAF | child.first << 3 | child.count;
             } else {
                 const auto child_index = std::uint32_t(nodes.size());
@@ -229,7 +231,7 @@ public:
                 nodes[index].child[c] = child_index;
             }
         }
-        return need + std::uint32_t(count - 1);
+        return need + (count > 1 ? 1 : 0);
     }
 
     std::vector<gpu::BvhNode> nodes;

@@ -15,7 +15,7 @@ namespace vkcppm {
 struct Bvh {
     std::vector<gpu::BvhNode> nodes;      // root first, depth-first
     std::vector<std::uint32_t> order;     // [triangles] leaf order: position -> index of the input
-    std::uint32_t stack = 1;              // entries that a traversal can need, at most
+    std::uint32_t stack = 1;              // nodes, at most, of which children can wait while one is traversed
 };
 
 /// Builds by binned surface area heuristic (Wald 2007), both cores, the same tree on any number of threads; then

@@ -98,6 +98,11 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     digits_ = (key_bits + 7) / 8;
     digit_bits_ = (key_bits + digits_ - 1) / digits_;
 
+    if (scene.bvh.nodes.size() > std::size_t(1) << BVH_MAX_NODE_BITS) {
+        throw Error(ExitCode::out_of_device_memory,
+                    fmt::format("the scene's {} triangles need {} nodes of a BVH, the kernels hold {}",
+                                scene.triangles.size(), scene.bvh.nodes.size(), 1u << BVH_MAX_NODE_BITS));
+    }
     using Kind = Buffer::Kind;
     const auto upload = [&](std::uint32_t binding, const char* name, const auto& data, Kind kind) {
         allocate(binding, name, data.size() * sizeof(data[0]), kind);
@@ -147,7 +152,7 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     gpu::PixelState pixel{};
     pixel.batch = float(settings.knn);  // B_1 = k_NN
     buffer(BIND_PIXELS).upload(std::vector<gpu::PixelState>(pixels_, pixel));
-    compile(settings, scene.bvh.stack, features);
+    compile(settings, scene.bvh, features);
 }
 
 void Integrator::allocate(std::uint32_t binding, const std::string& name, std::uint64_t bytes, Buffer::Kind kind) {
@@ -171,12 +176,13 @@ void Integrator::allocate_photons() {
     buffer(BIND_PARAMS).upload_value(params_);
 }
 
-void Integrator::compile(const Settings& settings, std::uint32_t stack, std::uint32_t features) {
+void Integrator::compile(const Settings& settings, const Bvh& bvh, std::uint32_t features) {
     const Specialization specialization = {
-        {SPEC_WORKGROUP, workgroup},       {SPEC_STACK, stack},
+        {SPEC_WORKGROUP, workgroup},       {SPEC_STACK, bvh.stack},
         {SPEC_ESTIMATOR, find_estimator(settings.estimator).id},
         {SPEC_RINGS, settings.rings},      {SPEC_SECTORS, settings.sectors},
         {SPEC_FEATURES, features},         {SPEC_DIGIT_BITS, digit_bits_},
+        {SPEC_NODE_BITS, std::uint32_t(std::bit_width(bvh.nodes.size() - 1))},
     };
     for (const KernelModule& module : kernel_modules()) {
         const std::string name(module.name);

@@ -61,7 +61,7 @@ private:
 
     void allocate(std::uint32_t binding, const std::string& name, std::uint64_t bytes, Buffer::Kind kind);
     void allocate_photons();
-    void compile(const Settings& settings, std::uint32_t stack, std::uint32_t features);
+    void compile(const Settings& settings, const Bvh& bvh, std::uint32_t features);
     void iterate(std::uint32_t iteration, Pass from, std::uint32_t first_round);
     void launch(const std::string& kernel, std::uint64_t invocations, const gpu::Launch& push);
     void launch_rounds(const std::string& kernel, std::uint64_t invocations, Pass pass, std::uint32_t iteration,

@@ -61,6 +61,13 @@ std::string missing(const vk::raii::PhysicalDevice& physical) {
     if (properties.apiVersion < VK_API_VERSION_1_2) return "Vulkan 1.2 is needed";
     const auto chain = physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
     if (!chain.get<vk::PhysicalDeviceVulkan12Features>().scalarBlockLayout) return "scalarBlockLayout is needed";
+    const auto subgroup = physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupProperties>()
+                              .get<vk::PhysicalDeviceSubgroupProperties>();
+    const auto needed = vk::SubgroupFeatureFlagBits::eVote | vk::SubgroupFeatureFlagBits::eArithmetic;
+    if (!(subgroup.supportedStages & vk::ShaderStageFlagBits::eCompute) ||
+        (subgroup.supportedOperations & needed) != needed) {
+        return "subgroup votes and arithmetic in compute shaders are needed";
+    }
     if (!compute_family(physical)) return "no compute queue with timestamps";
     const std::uint32_t storage = BIND_COUNT - BIND_FIRST_STORAGE;
     if (std::min(limits.maxPerStageDescriptorStorageBuffers, limits.maxDescriptorSetStorageBuffers) < storage) {

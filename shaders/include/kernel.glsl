@@ -1,5 +1,7 @@
 // What every kernel starts with: shared types, specialization constants, the launch block, buffers.
 #extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_vote : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
 #include "shared/types.h"
 #include "shared/estimators.h"
 #include "shared/bindings.h"
@@ -11,6 +13,7 @@ layout(constant_id = SPEC_RINGS) const uint RINGS = 2;
 layout(constant_id = SPEC_SECTORS) const uint SECTORS = 6;
 layout(constant_id = SPEC_FEATURES) const uint FEATURES = 0xffffffffu;
 layout(constant_id = SPEC_DIGIT_BITS) const uint DIGIT_BITS = 7;
+layout(constant_id = SPEC_NODE_BITS) const uint NODE_BITS = 20;
 
 layout(push_constant, scalar) uniform LaunchBlock { Launch launch; };
 layout(binding = BIND_PARAMS, scalar) uniform ParamsBlock { Params params; };

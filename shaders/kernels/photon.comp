@@ -50,29 +50,38 @@ void main() {
     uint slot = lane * params.photon_capacity;
     uint rays = 0u;
     int steps = int(params.step_budget);
-    while (state.path < count) {
-        --steps;
-        if (steps < 0) {
-            block_after(PASS_PHOTON);
-            break;
-        }
+    // Lanes whose ray is done do not wait for the longest of the SIMD group: see traverse().
+    Traversal traversal = no_traversal();
+    bool running = state.path < count;
+    bool fresh = true;     // the lane's ray has not begun
+    bool first_ray = true; // it began with the whole budget
+    while (subgroupAny(running)) {
         uint path = first + state.path;
-        if ((state.memory & PATH_BOUNCES) == 0u) {
-            bool punctual = emit(random_words(params.seed, launch.iteration, STREAM_PHOTON, path, 0u),
-                                 random4(params.seed, launch.iteration, STREAM_PHOTON, path, 1u),
-                                 state.origin, state.direction, state.power);
-            state.memory = PATH_OUTSIDE | (punctual ? PATH_STRAIGHT | PATH_DIRECT : 0u);
-            state.origin = enter_bounds(state.origin, state.direction);
-            state.power0 = largest(state.power);
+        if (running && fresh) {
+            if ((state.memory & PATH_BOUNCES) == 0u) {
+                bool punctual = emit(random_words(params.seed, launch.iteration, STREAM_PHOTON, path, 0u),
+                                     random4(params.seed, launch.iteration, STREAM_PHOTON, path, 1u),
+                                     state.origin, state.direction, state.power);
+                state.memory = PATH_OUTSIDE | (punctual ? PATH_STRAIGHT | PATH_DIRECT : 0u);
+                state.origin = enter_bounds(state.origin, state.direction);
+                state.power0 = largest(state.power);
+            }
+            traversal = begin_traversal(state.origin, state.direction);
+            fresh = false;
         }
-        bool fresh = steps + 1 == int(params.step_budget);
-        Hit hit;
-        uint found = trace(state.origin, state.direction, steps, hit);
-        if (found == TRACE_UNFINISHED) {
-            if (fresh) atomicAdd(status.stuck, 1u);
+        traverse(traversal, steps, true, running);
+        uint found = found_by(traversal);
+        if (running && found == TRACE_UNFINISHED && steps <= 0) {
+            if (first_ray) atomicAdd(status.stuck, 1u);
             block_after(PASS_PHOTON);
-            break;
+            running = false;
+            traversal.node = NO_NODE;
         }
+        if (!running || found == TRACE_UNFINISHED) continue;
+        --steps;
+        first_ray = false;
+        fresh = true;
+        Hit hit = traversal.hit;
         ++rays;
         ++state.memory;
         uint bounces = state.memory & PATH_BOUNCES;
@@ -134,6 +143,7 @@ void main() {
         if (!alive) {
             ++state.path;
             state.memory = PATH_OUTSIDE;
+            running = state.path < count;
         }
     }
     paths[lane] = state;

@@ -28,6 +28,7 @@ using uint = std::uint32_t;
 #define SPEC_SECTORS 4    // n_s, even
 #define SPEC_FEATURES 5   // FEATURE_* of this scene
 #define SPEC_DIGIT_BITS 6 // of one radix sort pass
+#define SPEC_NODE_BITS 7  // of the largest index of a node of this scene's BVH
 
 // Features of a scene: a pipeline holds only what its scene needs, and buffers that only a feature reads are empty
 // without it.
@@ -101,6 +102,7 @@ using uint = std::uint32_t;
 // Child word of a BVH node: 0 none; top bit set: leaf = first triangle << 3 | count; else index of a node.
 #define BVH_LEAF 0x80000000u
 #define BVH_MAX_LEAF 4
+#define BVH_MAX_NODE_BITS 23  // of an index of a node, so that a word of the traversal stack holds it
 
 // Top bit of TriangleShading::material: the three normals are the geometric normal.
 #define SHADING_FLAT 0x80000000u
@@ -108,15 +110,16 @@ using uint = std::uint32_t;
 // 4-wide node, 64 bytes, read as 4 uvec4 texels. Box of child c on axis a: origin[a] + 2^(exponent[a]-127) * q[a] byte c.
 struct BvhNode {
     vec3 origin;
-    uint exponents;    // biased exponents of the cell size, x | y << 8 | z << 16
+    uint exponents;    // biased exponents of the cell size, x | y << 8 | z << 16; bit 24 + c: there is a child c;
+                       // bit 28 + c: it is a leaf
     uint low_x;        // byte c: child c
     uint low_y;
     uint low_z;
     uint high_x;
     uint high_y;
     uint high_z;
-    uint child[4];
     uint unused[2];
+    uint child[4];
 };
 
 // Moeller-Trumbore form, 48 bytes, read as 3 vec4 texels.

@@ -4,7 +4,7 @@
 #pragma once
 #endif
 #define MEMBERS_BVH_NODE X(origin) X(exponents) X(low_x) X(low_y) X(low_z) X(high_x) X(high_y) X(high_z) \
-    X(child) X(unused)
+    X(unused) X(child)
 #define MEMBERS_TRIANGLE_GEOMETRY X(v0) X(error) X(e1) X(slack) X(e2) X(unused)
 #define MEMBERS_TRIANGLE_SHADING X(normal) X(material)
 #define MEMBERS_SURFACE_MATERIAL \

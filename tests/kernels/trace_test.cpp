@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -155,8 +156,9 @@ private:
 
 class Trace : public GpuTest {
 protected:
-    std::vector<gpu::RayOutput> trace(const FlatScene& flat, const std::vector<gpu::RayInput>& rays) {
-        Probe probe("trace", trace_words, flat.bvh.stack);
+    std::vector<gpu::RayOutput> trace(const FlatScene& flat, const std::vector<gpu::RayInput>& rays,
+                                      std::uint32_t node_bits = 20) {
+        Probe probe("trace", trace_words, flat.bvh.stack, ~0u, node_bits);
         probe.input(BIND_NODES, flat.bvh.nodes, Buffer::Kind::uint_texels);
         probe.input(BIND_TRIANGLES, flat.triangles, Buffer::Kind::float_texels);
         probe.input(PROBE_INPUT, rays);
@@ -395,6 +397,30 @@ TEST_F(Trace, ClosedMeshesLetNothingOut) {
                                << " at edges); " << first;
         EXPECT_LT(longest, 500) << name << ": steps of the longest ray";
     }
+}
+
+// The larger the tree, the fewer bits are left for the distance of what waits: less is skipped, the answer is the same.
+TEST_F(Trace, TheAnswerDoesNotDependOnTheSizeOfAReference) {
+    Random random(13);
+    Scene scene;
+    scene.materials.emplace_back();
+    for (int i = 0; i < 3000; ++i) add_random(scene, random, 0.1);
+    const FlatScene flat = flatten(scene);
+    std::vector<gpu::RayInput> rays(4000);
+    for (auto& ray : rays) ray = {glm::vec3(in_box(random, 0.5)), glm::vec3(glm::normalize(in_box(random, 1.0)))};
+    const auto bits = std::uint32_t(std::bit_width(flat.bvh.nodes.size() - 1));
+    const auto fine = trace(flat, rays, bits);
+    std::uint64_t fine_steps = 0, coarse_steps = 0;
+    for (const std::uint32_t coarser : {bits + 4, std::uint32_t(BVH_MAX_NODE_BITS)}) {
+        const auto coarse = trace(flat, rays, coarser);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            ASSERT_EQ(fine[i].found, coarse[i].found) << "ray " << i << ", " << coarser << " bits";
+            ASSERT_EQ(fine[i].t, coarse[i].t) << "ray " << i << ", " << coarser << " bits";
+            fine_steps += std::uint64_t(fine[i].steps);
+            coarse_steps += std::uint64_t(coarse[i].steps);
+        }
+    }
+    EXPECT_LT(fine_steps, coarse_steps) << "distances spare steps";
 }
 
 TEST_F(Trace, OutOfStepsSaysSo) {

@@ -22,11 +22,12 @@ void GpuTest::TearDown() {
     for (std::size_t i = messages_before_; i < messages.size(); ++i) ADD_FAILURE() << messages[i];
 }
 
-Probe::Probe(std::string name, std::span<const std::uint32_t> spirv, std::uint32_t stack, std::uint32_t features)
+Probe::Probe(std::string name, std::span<const std::uint32_t> spirv, std::uint32_t stack, std::uint32_t features,
+             std::uint32_t node_bits)
     : bindings_(device()),
       commands_(device(), bindings_, 16),
       kernel_(device(), bindings_, std::move(name), spirv,
-              {{SPEC_WORKGROUP, 64}, {SPEC_STACK, stack}, {SPEC_FEATURES, features}}) {
+              {{SPEC_WORKGROUP, 64}, {SPEC_STACK, stack}, {SPEC_FEATURES, features}, {SPEC_NODE_BITS, node_bits}}) {
     create(BIND_PARAMS, sizeof(gpu::Params), Buffer::Kind::uniform);
     create(BIND_STATUS, sizeof(gpu::Status), Buffer::Kind::storage);
 }

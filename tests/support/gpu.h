@@ -36,9 +36,9 @@ private:
 /// A kernel of tests/kernels with buffers of its own at the bindings it declares.
 class Probe {
 public:
-    /// features: FEATURE_* that it is specialised to.
+    /// features: FEATURE_* that it is specialised to. node_bits: of an index of a node of the BVH.
     Probe(std::string name, std::span<const std::uint32_t> spirv, std::uint32_t stack = 32,
-          std::uint32_t features = ~0u);
+          std::uint32_t features = ~0u, std::uint32_t node_bits = 20);
 
     template <typename T>
     void input(std::uint32_t binding, const std::vector<T>& data, Buffer::Kind kind = Buffer::Kind::storage) {

@@ -31,7 +31,7 @@ Corners random_triangles(std::size_t count, float size, std::uint32_t seed) {
 struct Walk {
     std::vector<int> times;   // [triangles] leaves that hold it
     int depth = 0;            // four-wide nodes on the longest path
-    std::uint32_t stack = 0;  // entries that the worst ray needs: siblings wait while the nearest child is entered
+    std::uint32_t stack = 0;  // nodes of which children wait in the worst case, while the nearest child is entered
     std::size_t leaves = 0;
 };
 
@@ -75,7 +75,7 @@ std::uint32_t walk_node(const Bvh& bvh, const Corners& triangles, std::uint32_t 
         }
         below.insert(below.end(), inside.begin(), inside.end());
     }
-    return deepest + (children > 0 ? children - 1 : 0);
+    return deepest + (children > 1 ? 1 : 0);
 }
 
 Walk check(const Corners& triangles) {
