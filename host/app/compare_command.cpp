@@ -3,13 +3,13 @@
 
 #include "app/commands.h"
 #include "app/console.h"
+#include "app/measures.h"
 #include "core/metrics.h"
 #include "io/exr.h"
 
 namespace vkcppm {
 namespace {
 
-/// Measures that are infinite or not a number become null: JSON has neither.
 std::string json_text(const CompareOptions& options, const Comparison& comparison) {
     const glm::dvec3& ratio = comparison.mean_ratio;
     nlohmann::ordered_json json;
@@ -21,9 +21,7 @@ std::string json_text(const CompareOptions& options, const Comparison& compariso
     json["image_non_finite"] = comparison.image_non_finite;
     json["reference_non_finite"] = comparison.reference_non_finite;
     json["mean_ratio"] = {ratio.r, ratio.g, ratio.b};
-    for (const Metric& metric : metrics()) {
-        json[std::string(metric.name)] = metric.of(comparison);
-    }
+    add_measures(json, comparison);
     json["psnr"] = comparison.psnr;
     return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }

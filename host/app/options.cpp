@@ -93,6 +93,19 @@ double parse_seconds(const std::string& option, const std::string& text) {
     refuse(option, text, "a time greater than 0, such as 90, 90s, 2m, 1.5h or 500ms");
 }
 
+StopAt parse_stop_at(const std::string& option, const std::string& text) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos) {
+        refuse(option, text, "METRIC=VALUE, such as relmse_trimmed=0.0035");
+    }
+    StopAt result{&find_metric(option, text.substr(0, equals))};
+    std::string_view rest = std::string_view(text).substr(equals + 1);
+    if (!take_number(rest, result.value) || !rest.empty() || !std::isfinite(result.value) || !(result.value > 0.0)) {
+        refuse(option, text, "a metric and a finite number greater than 0");
+    }
+    return result;
+}
+
 /// Adds an option whose value `parse` turns into `target`.
 template <typename Target, typename Value>
 CLI::Option* add(CLI::App& app, const std::string& name, const char* type, Target& target,
@@ -160,6 +173,15 @@ Options parse_render(const Words& words) {
         fmt::format("Iterations (default: {}; unbounded with --time)", standard.iterations));
     add(app, "--time", "TIME", options.settings.seconds, parse_seconds,
         "Stop after the iteration in which this time has passed: 90, 90s, 2m, 1.5h, 500ms");
+    app.add_option("--reference", options.reference,
+                   "Measure the error against this picture after 1, 2, 4, ... 64, 128, 192, ... iterations, for\n"
+                   "--stats. The clock stands still meanwhile: it runs in the passes of the iterations, not while\n"
+                   "scene and kernels are loaded, errors measured or pictures written")
+        ->type_name("REF.exr");
+    add(app, "--stop-at", "METRIC=VALUE", options.stop_at, parse_stop_at,
+        "Stop after the first iteration after which the error is at most this, such as relmse_trimmed=0.0035;\n"
+        "one of " + metric_names())
+        ->needs("--reference");
     add(app, "--photons", "N", options.settings.photons, parse_whole,
         fmt::format("Light paths emitted an iteration (default: {})", standard.photons));
     add(app, "--size", "WxH", options.settings.size, parse_size,

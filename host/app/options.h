@@ -6,6 +6,7 @@
 #include <string>
 #include <variant>
 
+#include "core/metrics.h"
 #include "render/settings.h"
 #include "vk/device.h"
 
@@ -21,6 +22,12 @@ struct SceneOptions {
     ThinGlass thin_glass = ThinGlass::thin;
 };
 
+/// An error at which a render ends.
+struct StopAt {
+    const Metric* metric = nullptr;
+    double value = 0.0;  // > 0
+};
+
 /// vkcppm SCENE ...
 struct RenderOptions {
     SceneOptions scene;
@@ -29,6 +36,8 @@ struct RenderOptions {
     std::optional<std::filesystem::path> png;
     double exposure = 0.0;                      // stops, for the PNG
     std::optional<std::filesystem::path> stats; // JSON
+    std::optional<std::filesystem::path> reference;  // EXR that the render is measured against
+    std::optional<StopAt> stop_at;              // only with a reference
     Device::Options device;
     bool quiet = false;
     bool verbose = false;

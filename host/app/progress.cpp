@@ -11,6 +11,16 @@ namespace {
 constexpr double terminal_interval = 0.1;  // s
 constexpr double plain_interval = 10.0;    // s
 
+/// ", relmse 0.0123", and after how many iterations where there have been more since.
+std::string error_text(const Progress& progress) {
+    if (!progress.error) {
+        return "";
+    }
+    const LatestError& error = *progress.error;
+    std::string text = fmt::format(", {} {:.3g}", error.metric->name, error.value);
+    return error.iterations == progress.iterations_done ? text : text + fmt::format(" after {}", error.iterations);
+}
+
 }  // namespace
 
 std::string duration_text(double seconds) {
@@ -37,7 +47,7 @@ std::string progress_text(const Progress& progress, std::optional<double> time_l
     if (done > 0.0) {
         text += fmt::format(", {} left", duration_text(progress.wall_seconds * (1.0 - done) / done));
     }
-    return text;
+    return text + error_text(progress);
 }
 
 ProgressLine::ProgressLine(std::FILE* stream, bool terminal, std::optional<double> time_limit)
@@ -61,7 +71,8 @@ void ProgressLine::update(const Progress& progress) {
 }
 
 void ProgressLine::finish(const Progress& progress) {
-    write(fmt::format("{} iterations in {:.1f} s", progress.iterations_done, progress.wall_seconds));
+    write(fmt::format("{} iterations in {:.1f} s{}", progress.iterations_done, progress.wall_seconds,
+                      error_text(progress)));
     open_ = terminal_;
 }
 

@@ -12,8 +12,8 @@ namespace vkcppm {
 /// "12 s", "3 min 20 s", "2 h 5 min". seconds >= 0.
 std::string duration_text(double seconds);
 
-/// Iterations done, percentage and an estimate of the time left. time_limit: seconds of Settings::seconds; where it is
-/// set, the render ends by its iterations or by its time, whichever comes first.
+/// Iterations done, percentage, an estimate of the time left and the latest error. time_limit: seconds of
+/// Settings::seconds; where it is set, the render ends by its iterations or by its time, whichever comes first.
 std::string progress_text(const Progress& progress, std::optional<double> time_limit);
 
 /// On a terminal one line that is rewritten ten times a second at most; elsewhere a line every ten seconds at most.
@@ -27,7 +27,7 @@ public:
     /// The first call writes, a later one only where the interval has passed since the last line.
     void update(const Progress& progress);
 
-    /// The last line: what was done in which time.
+    /// The last line: what was done in which time, and how near it came.
     void finish(const Progress& progress);
 
 private:

@@ -1,9 +1,12 @@
 #include "app/record.h"
 
+#include <cassert>
 #include <iterator>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include "app/measures.h"
 
 namespace vkcppm {
 namespace {
@@ -74,8 +77,14 @@ ExrAttributes exr_attributes(const SceneOptions& options, const Scene& scene, co
     return attributes;
 }
 
-std::string stats_json(const SceneOptions& options, const Scene& scene, const Rendering& rendering) {
+bool reached(const StopAt& stop_at, const Rendering& rendering) {
+    assert(!rendering.curve.empty());
+    return stop_at.metric->of(rendering.curve.back().error) <= stop_at.value;
+}
+
+std::string stats_json(const RenderOptions& options, const Scene& scene, const Rendering& rendering) {
     const Report& report = rendering.report;
+    const auto& environment = options.scene.environment;
     Json json;
     json["version"] = VKCPPM_VERSION;
     json["device"] = report.device;
@@ -83,8 +92,8 @@ std::string stats_json(const SceneOptions& options, const Scene& scene, const Re
     json["scene"] = {{"file", scene.file.string()},
                      {"hash", hash_text(scene)},
                      {"triangles", scene.triangles.size()},
-                     {"environment", options.environment ? Json(options.environment->string()) : Json()},
-                     {"thin_glass", name_of(options.thin_glass)}};
+                     {"environment", environment ? Json(environment->string()) : Json()},
+                     {"thin_glass", name_of(options.scene.thin_glass)}};
     json["settings"] = settings_json(rendering.settings);
     json["totals"] = {{"iterations", report.iterations},
                       {"emitted_paths", report.emitted_paths},
@@ -99,6 +108,15 @@ std::string stats_json(const SceneOptions& options, const Scene& scene, const Re
     for (const PassReport& pass : report.passes) {
         json["passes"].push_back(
             {{"name", pass.name}, {"calls", pass.calls}, {"device_seconds", pass.device_seconds}});
+    }
+    if (options.reference) {
+        json["reference"] = options.reference->string();
+        if (options.stop_at) {
+            json["stop_at"] = {{"metric", options.stop_at->metric->name},
+                               {"value", options.stop_at->value},
+                               {"reached", reached(*options.stop_at, rendering)}};
+        }
+        json["curve"] = curve_json(rendering.curve);
     }
     return dump(json, 2) + "\n";
 }

@@ -15,8 +15,11 @@ namespace vkcppm {
 ExrAttributes exr_attributes(const SceneOptions& options, const Scene& scene, const Rendering& rendering);
 
 /// The text of --stats: a JSON object with passes [{name, calls, device_seconds}], totals, settings, scene, device,
-/// driver and version.
-std::string stats_json(const SceneOptions& options, const Scene& scene, const Rendering& rendering);
+/// driver and version; with a reference also its file, what the render was to stop at, and the curve.
+std::string stats_json(const RenderOptions& options, const Scene& scene, const Rendering& rendering);
+
+/// True where the last point of the curve is at or below the error to stop at. Asserts that the render was measured.
+bool reached(const StopAt& stop_at, const Rendering& rendering);
 
 /// The passes and totals as a table to read.
 std::string stats_table(const Report& report);

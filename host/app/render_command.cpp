@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -12,7 +13,9 @@
 #include "app/load.h"
 #include "app/progress.h"
 #include "app/record.h"
+#include "app/reference.h"
 #include "core/error.h"
+#include "core/metrics.h"
 #include "io/atomic_file.h"
 #include "io/exr.h"
 #include "io/png.h"
@@ -27,6 +30,9 @@ void check_outputs(const RenderOptions& options) {
     std::vector<fs::path> taken{fs::weakly_canonical(options.scene.file)};
     if (options.scene.environment) {
         taken.push_back(fs::weakly_canonical(*options.scene.environment));
+    }
+    if (options.reference) {
+        taken.push_back(fs::weakly_canonical(*options.reference));
     }
     const auto check = [&](const char* option, const fs::path& file) {
         const fs::path canonical = fs::weakly_canonical(file);
@@ -54,17 +60,48 @@ void print_warnings(const std::vector<std::string>& warnings) {
     }
 }
 
-Rendering render_with_progress(const Scene& scene, const RenderOptions& options, Device& device) {
+/// What the render is measured against; absent without a reference. The picture will have that size.
+std::optional<Measuring> read_measuring(const RenderOptions& options, const Extent& size) {
+    if (!options.reference) {
+        return std::nullopt;
+    }
+    Measuring measuring{read_reference(*options.reference, size), &find_metric("--reference", "relmse"), std::nullopt};
+    if (options.stop_at) {
+        measuring.metric = options.stop_at->metric;
+        measuring.stop_at = options.stop_at->value;
+    }
+    return measuring;
+}
+
+/// Says whether the error to stop at was reached.
+void print_stop(const StopAt& stop_at, const Rendering& rendering, bool quiet) {
+    const CurvePoint& last = rendering.curve.back();
+    const std::string error = fmt::format("{} {:.6g} after {} iterations", stop_at.metric->name,
+                                          stop_at.metric->of(last.error), last.iterations);
+    if (!reached(stop_at, rendering)) {
+        print_message(fmt::format("warning: {}: --stop-at {:.6g} was not reached", error, stop_at.value));
+    } else if (!quiet) {
+        print_message(fmt::format("{}: --stop-at {:.6g} was reached", error, stop_at.value));
+    }
+}
+
+Rendering render_with_progress(const Scene& scene, const RenderOptions& options, const Measuring* measuring,
+                               Device& device) {
     ProgressLine line(stderr, ::isatty(STDERR_FILENO) == 1, options.settings.seconds);
     const Rendering rendering = render(scene, options.settings, device, [&](const Progress& progress) {
         if (!options.quiet) {
             line.update(progress);
         }
         return !interrupted();
-    });
+    }, measuring);
     if (!options.quiet) {
         const Report& report = rendering.report;
-        line.finish({report.iterations, rendering.settings.iterations, report.wall_seconds});
+        Progress progress{report.iterations, rendering.settings.iterations, report.wall_seconds};
+        if (measuring) {
+            const CurvePoint& last = rendering.curve.back();
+            progress.error = {measuring->metric, measuring->metric->of(last.error), last.iterations};
+        }
+        line.finish(progress);
     }
     return rendering;
 }
@@ -89,7 +126,7 @@ void write_outputs(const RenderOptions& options, const Scene& scene, const Rende
         say_wrote(*options.png);
     }
     if (options.stats) {
-        write_file(*options.stats, stats_json(options.scene, scene, rendering));
+        write_file(*options.stats, stats_json(options, scene, rendering));
         say_wrote(*options.stats);
     }
 }
@@ -118,13 +155,18 @@ void execute(const RenderOptions& options) {
     check_outputs(options);
     const Scene scene = load_scene(options.scene);
     print_warnings(scene.warnings);
-    resolve_settings(options.settings, scene);  // a bad value is told before the device is asked for
+    // Bad values and references are told before the device is asked for.
+    const Settings settings = resolve_settings(options.settings, scene);
+    const std::optional<Measuring> measuring = read_measuring(options, *settings.size);
     Device device(options.device);
     if (options.device.validate && !device.validating()) {
         throw Error(ExitCode::no_device, "--validate: the Vulkan validation layer is not installed");
     }
-    const Rendering rendering = render_with_progress(scene, options, device);
+    const Rendering rendering = render_with_progress(scene, options, measuring ? &*measuring : nullptr, device);
     print_warnings(rendering.warnings);
+    if (options.stop_at) {
+        print_stop(*options.stop_at, rendering, options.quiet);
+    }
     write_outputs(options, scene, rendering);
     if (options.verbose) {
         print_table(rendering.report);

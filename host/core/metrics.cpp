@@ -106,16 +106,22 @@ std::span<const Metric> metrics() {
     return table;
 }
 
-const Metric& find_metric(std::string_view option, std::string_view name) {
+std::string metric_names() {
     std::string names;
+    for (const Metric& metric : metrics()) {
+        names += (names.empty() ? "" : ", ") + std::string(metric.name);
+    }
+    return names;
+}
+
+const Metric& find_metric(std::string_view option, std::string_view name) {
     for (const Metric& metric : metrics()) {
         if (metric.name == name) {
             return metric;
         }
-        names += (names.empty() ? "" : ", ") + std::string(metric.name);
     }
     throw Error(ExitCode::usage,
-                std::string(option) + ": '" + std::string(name) + "' is no metric: there are " + names);
+                std::string(option) + ": '" + std::string(name) + "' is no metric: there are " + metric_names());
 }
 
 }  // namespace vkcppm

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include <glm/vec3.hpp>
@@ -47,6 +48,9 @@ struct Metric {
 
 /// All of them, in the order in which they are told.
 std::span<const Metric> metrics();
+
+/// Their names, separated by commas.
+std::string metric_names();
 
 /// Throws Error(usage) with the names that there are; `option` is what asked for it.
 const Metric& find_metric(std::string_view option, std::string_view name);

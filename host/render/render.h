@@ -3,10 +3,13 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/curve.h"
 #include "core/image.h"
+#include "core/metrics.h"
 #include "render/report.h"
 #include "render/settings.h"
 #include "scene/scene.h"
@@ -15,10 +18,25 @@ namespace vkcppm {
 
 class Device;
 
+/// What a render is measured against while it runs.
+struct Measuring {
+    Image reference;                        // of the size of the picture
+    const Metric* metric = nullptr;         // the one that progress tells
+    std::optional<double> stop_at;          // the render ends with the first iteration after which it is at most this
+};
+
+/// The latest error of a render that is measured.
+struct LatestError {
+    const Metric* metric = nullptr;
+    double value = 0.0;
+    std::uint64_t iterations = 0;           // after which it was measured
+};
+
 struct Progress {
     std::uint64_t iterations_done = 0;
     std::uint64_t iterations_total = 0;     // the bound of the settings
-    double wall_seconds = 0.0;              // since the first iteration began
+    double wall_seconds = 0.0;              // since the first iteration began, without measuring
+    std::optional<LatestError> error = {};
 };
 
 /// Called between iterations; false ends the render after the iteration that is done.
@@ -28,6 +46,7 @@ struct Rendering {
     Image image;
     Settings settings;                      // as resolved: size and camera filled in
     Report report;
+    Curve curve;                            // at every is_snapshot() and after the last iteration, where measured
     /// [P] each, where the settings ask for them: ppm.radius (m), ppm.photons, ppm.batch, ppm.rejections,
     /// ppm.statistic (over its threshold), ppm.iterations, Z (m along the camera's axis), Albedo.R/G/B, N.X/Y/Z.
     std::map<std::string, std::vector<float>> aovs;
@@ -39,7 +58,10 @@ struct Rendering {
 Settings resolve_settings(const Settings& settings, const Scene& scene);
 
 /// Renders `scene` by the estimator of the settings. Throws Error on a setting out of range (usage), on a scene or
-/// image that does not fit the device (out_of_device_memory), on a lost device (device_lost).
-Rendering render(const Scene& scene, const Settings& settings, Device& device, const KeepGoing& keep_going);
+/// image that does not fit the device (out_of_device_memory), on a lost device (device_lost), on a reference of another
+/// size (usage). Where it is measured, submissions end at snapshots, or with every iteration where it stops at an
+/// error; the picture is the same, and neither Settings::seconds nor the report's seconds count the time it takes.
+Rendering render(const Scene& scene, const Settings& settings, Device& device, const KeepGoing& keep_going,
+                 const Measuring* measuring = nullptr);
 
 }  // namespace vkcppm

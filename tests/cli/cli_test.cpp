@@ -11,10 +11,12 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "core/image.h"
+#include "core/metrics.h"
 #include "io/exr.h"
 #include "support/files.h"
 #include "support/process.h"
@@ -302,6 +304,11 @@ TEST_F(Cli, EveryMisuseHasItsExitCodeAndItsLine) {
         {{"--rings", "0"}, 2, {"rings", "0"}},
         {{"--sectors", "0"}, 2, {"sectors", "0"}},
         {{"--exposure", "1"}, 2, {"--exposure", "--png"}},
+        {{"--reference", "missing.exr"}, 66, {"missing.exr"}},
+        {{"--reference", scene("caustic")}, 65, {"caustic.gltf"}},
+        {{"--reference", "caustic.exr"}, 2, {"-o", "caustic.exr", "input"}},
+        {{"--stop-at", "relmse=1"}, 2, {"--stop-at", "--reference"}},
+        {{"--reference", "r.exr", "--stop-at", "worst=1"}, 2, {"--stop-at", "worst", "relmse_trimmed"}},
         {{"--png", "caustic.exr"}, 2, {"--png", "caustic.exr"}},
         {{"-o", scene("caustic")}, 2, {"-o", "caustic.gltf"}},
         {{"--device", "no such device"}, 69, {"no such device"}},
@@ -544,6 +551,157 @@ TEST_F(Cli, ProgressIsPlainLinesWithoutATerminalAndNothingWhenQuiet) {
     const auto verbose = render({"--verbose"});
     EXPECT_TRUE(contains(verbose.err, "device s")) << verbose.err;
     EXPECT_TRUE(contains(verbose.err, "1000 emitted paths")) << verbose.err;
+}
+
+// ---- Measuring on the way
+
+class CliReference : public Cli {
+protected:
+    void SetUp() override { expect_done(plain({"-o", "ref.exr", "--seed", "2", "--iterations", "64"})); }
+
+    /// A render of the reference's size and another seed, against it.
+    test::ProcessResult measured(Words more) const {
+        more.insert(more.begin(), {"--reference", "ref.exr"});
+        return plain(more);
+    }
+
+    /// The same without the reference.
+    test::ProcessResult plain(Words more) const {
+        Words words{scene("caustic"), "--size", "16x12", "--photons", "500"};
+        words.insert(words.end(), more.begin(), more.end());
+        return run(words);
+    }
+
+    Json stats(const std::string& name) const { return Json::parse(test::read_bytes(folder_ / name)); }
+
+    /// The errors of a picture as compare tells them.
+    Json compared(const std::string& name) const {
+        const auto result = run({"compare", name, "ref.exr", "--json"});
+        expect_done(result);
+        return Json::parse(result.out);
+    }
+
+    /// What the snapshot after `iterations` should be: the errors of a picture of as many iterations.
+    Json errors_after(std::uint64_t iterations) const {
+        expect_done(plain({"-o", "short.exr", "--iterations", std::to_string(iterations), "--quiet"}));
+        return compared("short.exr");
+    }
+};
+
+std::vector<std::uint64_t> iterations_of(const Json& curve) {
+    std::vector<std::uint64_t> iterations;
+    for (const Json& point : curve) {
+        iterations.push_back(point.at("iterations"));
+    }
+    return iterations;
+}
+
+/// Every metric of the snapshot is that of the comparison, to the last bit.
+void expect_same_errors(const Json& point, const Json& comparison) {
+    for (const Metric& metric : metrics()) {
+        EXPECT_EQ(point.at(metric.name), comparison.at(metric.name))
+            << metric.name << " after " << point.at("iterations") << " iterations";
+    }
+}
+
+TEST_F(CliReference, TheCurveHoldsTheErrorsOfThePicturesOnTheWay) {
+    const auto result = measured({"-o", "a.exr", "--stats", "a.json", "--iterations", "11"});
+    expect_done(result);
+    const Json text = stats("a.json");
+    const Json& curve = text.at("curve");
+    ASSERT_EQ(iterations_of(curve), (std::vector<std::uint64_t>{1, 2, 4, 8, 11}));
+    for (const Json& point : curve) {
+        expect_same_errors(point, errors_after(point.at("iterations")));
+    }
+    expect_same_errors(curve.back(), compared("a.exr"));
+    EXPECT_TRUE(test::read_bytes(folder_ / "short.exr") == test::read_bytes(folder_ / "a.exr"))
+        << "the picture, or its record, is another where it is measured";
+
+    // On the clock are the passes of iterations: all that the table of passes has but the snapshots themselves.
+    double seconds = 0.0;
+    for (const Json& point : curve) {
+        EXPECT_GT(point.at("seconds").get<double>(), seconds) << point;
+        seconds = point.at("seconds");
+    }
+    double passes = 0.0, snapshots = 0.0;
+    for (const Json& pass : text.at("passes")) {
+        (pass.at("name") == "resolve" ? snapshots : passes) += pass.at("device_seconds").get<double>();
+    }
+    EXPECT_NEAR(seconds, passes, 1e-9 * passes) << snapshots << " s of resolve";
+
+    EXPECT_EQ(text.at("reference"), "ref.exr");
+    EXPECT_FALSE(text.contains("stop_at"));
+    EXPECT_TRUE(contains(lines_of(result.err).front(), ", relmse ")) << result.err;
+    const std::string last = fmt::format(", relmse {:.3g}\n", curve.back().at("relmse").get<double>());
+    EXPECT_TRUE(contains(result.err, "11 iterations in ") && contains(result.err, last)) << last << result.err;
+}
+
+TEST_F(CliReference, TheSameRenderHasTheSameCurve) {
+    for (const char* name : {"a", "b"}) {
+        expect_done(measured({"-o", "a.exr", "--stats", std::string(name) + ".json", "--iterations", "70", "--quiet"}));
+    }
+    Json a = stats("a.json").at("curve"), b = stats("b.json").at("curve");
+    ASSERT_EQ(iterations_of(a), (std::vector<std::uint64_t>{1, 2, 4, 8, 16, 32, 64, 70}));
+    for (Json* curve : {&a, &b}) {
+        for (Json& point : *curve) {
+            point.erase("seconds");
+        }
+    }
+    EXPECT_EQ(a, b);
+}
+
+TEST_F(CliReference, TheCurveOfALimitedTimeEndsWithTheLastIteration) {
+    expect_done(measured({"-o", "a.exr", "--stats", "a.json", "--time", "50ms", "--quiet"}));
+    const Json text = stats("a.json");
+    EXPECT_EQ(text.at("curve").back().at("iterations"), text.at("totals").at("iterations"));
+    expect_same_errors(text.at("curve").back(), compared("a.exr"));
+}
+
+TEST_F(CliReference, StopsAfterTheFirstIterationThatIsNearEnough) {
+    // A render of 1, 2, 3, ... iterations each; the level is the error of the seventh.
+    std::vector<double> errors;
+    for (std::uint64_t i = 1; i <= 7; ++i) {
+        errors.push_back(errors_after(i).at("smape_trimmed"));
+    }
+    const double level = errors.back();
+    const std::string errors_text = Json(errors).dump();
+    ASSERT_EQ(std::count_if(errors.begin(), errors.end(), [&](double error) { return error <= level; }), 1)
+        << "the seventh is not the first below its own level, choose another: " << errors_text;
+    const std::string goal = "smape_trimmed=" + Json(level).dump();
+    const auto result = measured({"-o", "a.exr", "--stats", "a.json", "--stop-at", goal});
+    expect_done(result);
+    EXPECT_EQ(attributes("a.exr").at("vkcppm.iterations_done"), "7") << goal << " of " << errors_text;
+    EXPECT_EQ(read_exr(folder_ / "a.exr"), read_exr(folder_ / "short.exr"));
+    const Json text = stats("a.json");
+    EXPECT_EQ(iterations_of(text.at("curve")), (std::vector<std::uint64_t>{1, 2, 4, 7}));
+    EXPECT_EQ(text.at("stop_at"), Json({{"metric", "smape_trimmed"}, {"value", level}, {"reached", true}}));
+    EXPECT_TRUE(contains(result.err, "7 iterations in ")) << result.err;
+    EXPECT_TRUE(contains(result.err, "was reached")) << result.err;
+}
+
+TEST_F(CliReference, SaysWhereTheErrorWasNotReached) {
+    const auto result = measured({"-o", "a.exr", "--stats", "a.json", "--iterations", "3", "--stop-at", "mse=1e-9",
+                                  "--quiet"});
+    expect_done(result);
+    EXPECT_TRUE(contains(result.err, "warning: mse ") && contains(result.err, " after 3 iterations: --stop-at 1e-09 "
+                                                                              "was not reached"))
+        << result.err;
+    EXPECT_EQ(stats("a.json").at("stop_at").at("reached"), false);
+}
+
+TEST_F(CliReference, RefusesAReferenceThatItCannotMeasureBy) {
+    Image image = read_exr(folder_ / "ref.exr");
+    image.rgb[16 * 3 + 5].g = std::numeric_limits<float>::quiet_NaN();
+    image.rgb[16 * 4].b = std::numeric_limits<float>::infinity();
+    write_exr(folder_ / "nan.exr", image);
+    test::write_bytes(folder_ / "text.exr", "no picture");
+    expect_failure(run({scene("caustic"), "--reference", "ref.exr", "--size", "16x13"}), 2,
+                   {"ref.exr", "16x12", "16x13"}, "size");
+    expect_failure(plain({"--reference", "nan.exr"}), 65, {"nan.exr", "2 of 192", "column 5, row 3"}, "NaN");
+    expect_failure(plain({"--reference", "text.exr"}), 65, {"text.exr"}, "no picture");
+    expect_failure(plain({"--reference", "ref.exr", "-o", "ref.exr"}), 2, {"-o", "ref.exr", "input"}, "the picture");
+    expect_failure(plain({"--reference", "ref.exr", "--stats", "./ref.exr"}), 2, {"--stats", "ref.exr"}, "statistics");
+    EXPECT_EQ(test::names_in(folder_.path()), (std::set<std::string>{"nan.exr", "ref.exr", "text.exr"}));
 }
 
 class CliSignal : public Cli, public testing::WithParamInterface<int> {};

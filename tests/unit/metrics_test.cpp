@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <random>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -39,11 +41,12 @@ std::pair<Image, Image> noisy_pair(std::uint32_t width, std::uint32_t height, st
     return {image, reference};
 }
 
-/// The measures once more: planes instead of pixels, a full sort instead of a selection, thresholds of the inverse
-/// transfer function instead of the function, long double.
+/// The measures once more: other formulas, a full sort instead of a selection, thresholds of the inverse transfer
+/// function instead of the function, long double.
 struct SecondOpinion {
     long double ratio[3];
-    long double mse, relative, trimmed, srgb, psnr;
+    std::map<std::string, long double> measures;  // by Metric::name
+    long double psnr;
 };
 
 /// Linear values at which the next level of the encoding begins, [255].
@@ -61,10 +64,21 @@ int srgb_level(long double linear) {
     return int(std::upper_bound(thresholds.begin(), thresholds.end(), linear) - thresholds.begin());
 }
 
+/// Adds the mean of the pixels' values as `name`, and that without the largest thousandth as `name`_trimmed.
+void add_means(SecondOpinion& opinion, const std::string& name, std::vector<long double> values) {
+    const std::size_t count = values.size();
+    std::sort(values.begin(), values.end());
+    const std::size_t kept = count - std::size_t(std::floor(0.001L * count + 1e-9L));
+    for (std::size_t i = 0; i < count; ++i) {
+        opinion.measures[name] += values[i] / count;
+        opinion.measures[name + "_trimmed"] += i < kept ? values[i] / kept : 0.0L;
+    }
+}
+
 SecondOpinion second_opinion(const Image& image, const Image& reference) {
     const std::size_t count = image.rgb.size();
     SecondOpinion result{};
-    std::vector<long double> relative(count, 0.0L);
+    std::vector<long double> square(count), relative(count), symmetric(count), levels(count);
     for (int c = 0; c < 3; ++c) {
         long double mean_x = 0.0L;
         long double mean_r = 0.0L;
@@ -73,20 +87,23 @@ SecondOpinion second_opinion(const Image& image, const Image& reference) {
             const long double r = reference.rgb[i][c];
             mean_x += x / count;
             mean_r += r / count;
-            result.mse += (x * x - 2 * x * r + r * r) / (3 * count);
-            const long double levels = srgb_level(x) - srgb_level(r);
-            result.srgb += levels * levels / (3 * count);
+            square[i] += (x * x - 2 * x * r + r * r) / 3;
             relative[i] += std::pow((x - r) / std::hypot(r, 0.1L), 2.0L) / 3;
+            // Of opposite signs the distance is the sum; of one sign it is what the smaller lacks of the larger.
+            const long double small = std::min(std::abs(x), std::abs(r)), sum = std::abs(x) + std::abs(r);
+            symmetric[i] += (sum == 0.0L ? 0.0L : x * r < 0.0L ? 1.0L : 1.0L - 2 * small / sum) / 3;
+            levels[i] += std::pow((long double)(srgb_level(x) - srgb_level(r)), 2.0L) / 3;
         }
         result.ratio[c] = mean_x / mean_r;
     }
-    std::sort(relative.begin(), relative.end());
-    const std::size_t kept = count - std::size_t(std::floor(0.001L * count + 1e-9L));
-    for (std::size_t i = 0; i < count; ++i) {
-        result.relative += relative[i] / count;
-        result.trimmed += i < kept ? relative[i] / kept : 0.0L;
+    add_means(result, "mse", square);
+    add_means(result, "relmse", relative);
+    add_means(result, "smape", symmetric);
+    add_means(result, "srgb_mse", levels);
+    for (const std::string part : {"", "_trimmed"}) {
+        result.measures["rmse" + part] = std::exp(std::log(result.measures.at("mse" + part)) / 2);
     }
-    result.psnr = 20 * std::log10(255.0L) - 10 * std::log10(result.srgb);
+    result.psnr = 20 * std::log10(255.0L) - 10 * std::log10(result.measures.at("srgb_mse"));
     return result;
 }
 
@@ -119,6 +136,8 @@ TEST(Metrics, OfTwoPixelsByHand) {
     EXPECT_DOUBLE_EQ(c.mean_ratio.g, 0.5);
     EXPECT_DOUBLE_EQ(c.mean_ratio.b, 3.0);
     EXPECT_DOUBLE_EQ(c.mse.all, 4 * 0.25 / 6);
+    EXPECT_DOUBLE_EQ(c.rmse.all, std::sqrt(1.0 / 6.0));
+    EXPECT_NEAR(c.smape.all, (0.5 / 2.5 + 1.0 + 0.5 / 1.5 + 1.0) / 6, 1e-15);
     const double relative = (0.25 / 1.01 + 0.25 / 0.01 + 0.25 / 1.01 + 0.25 / 0.26) / 6;
     EXPECT_NEAR(c.relmse.all, relative, 1e-14);
     EXPECT_NEAR(c.relmse.trimmed, relative, 1e-14) << "of two pixels none is the worst 0.1 %";
@@ -135,12 +154,18 @@ TEST(Metrics, AgreeWithASecondImplementation) {
     for (int channel = 0; channel < 3; ++channel) {
         EXPECT_NEAR(c.mean_ratio[channel], double(expected.ratio[channel]), 1e-11);
     }
-    EXPECT_NEAR(c.mse.all / double(expected.mse), 1.0, 1e-11);
-    EXPECT_NEAR(c.relmse.all / double(expected.relative), 1.0, 1e-11);
-    EXPECT_NEAR(c.relmse.trimmed / double(expected.trimmed), 1.0, 1e-11);
-    EXPECT_NEAR(c.srgb_mse.all / double(expected.srgb), 1.0, 1e-11);
+    EXPECT_EQ(metrics().size(), expected.measures.size());
+    for (const Metric& metric : metrics()) {
+        const std::string name(metric.name);
+        ASSERT_TRUE(expected.measures.contains(name)) << name;
+        const auto value = double(expected.measures.at(name));
+        EXPECT_NEAR(metric.of(c) / value, 1.0, 1e-11) << name << " " << metric.of(c) << ", second opinion " << value;
+        if (!name.ends_with("_trimmed")) {
+            EXPECT_LT(expected.measures.at(name + "_trimmed"), 0.999 * expected.measures.at(name))
+                << name << ": leaving out the worst changes too little to tell a wrong trimming from a right one";
+        }
+    }
     EXPECT_NEAR(c.psnr, double(expected.psnr), 1e-9);
-    EXPECT_LT(c.relmse.trimmed, c.relmse.all);
 }
 
 TEST(Metrics, TrimmingDropsExactlyOnePixelInAThousand) {
@@ -160,10 +185,9 @@ TEST(Metrics, IdenticalPicturesHaveNoError) {
     const Image reference = noisy_pair(31, 17, 9).second;
     const Comparison c = compare(reference, reference);
     EXPECT_EQ(c.mean_ratio, glm::dvec3(1.0));
-    EXPECT_EQ(c.mse.all, 0.0);
-    EXPECT_EQ(c.relmse.all, 0.0);
-    EXPECT_EQ(c.relmse.trimmed, 0.0);
-    EXPECT_EQ(c.srgb_mse.all, 0.0);
+    for (const Metric& metric : metrics()) {
+        EXPECT_EQ(metric.of(c), 0.0) << metric.name;
+    }
     EXPECT_EQ(c.psnr, std::numeric_limits<double>::infinity());
 }
 
@@ -186,19 +210,32 @@ TEST(Metrics, NonFinitePixelsAreCountedAndLeftOut) {
     }
     image_rest.extent = reference_rest.extent = {997, 1};
     const Comparison rest = compare(image_rest, reference_rest);
-    EXPECT_EQ(c.mse.all, rest.mse.all);
-    EXPECT_EQ(c.relmse.all, rest.relmse.all);
+    for (const Metric& metric : metrics()) {
+        EXPECT_EQ(metric.of(c), metric.of(rest)) << metric.name;
+        EXPECT_TRUE(std::isfinite(metric.of(c))) << metric.name << " " << metric.of(c);
+    }
     EXPECT_EQ(c.psnr, rest.psnr);
-    EXPECT_TRUE(std::isfinite(c.mse.all));
 }
 
 TEST(Metrics, OfPicturesWithoutAFinitePixelAreNotANumber) {
     const Image image = picture(1, 1, {glm::vec3(std::numeric_limits<float>::quiet_NaN())});
     const Comparison c = compare(image, image);
     EXPECT_EQ(c.pixels, 0u);
-    EXPECT_TRUE(std::isnan(c.mse.all));
-    EXPECT_TRUE(std::isnan(c.relmse.all));
-    EXPECT_TRUE(std::isnan(c.relmse.trimmed));
+    for (const Metric& metric : metrics()) {
+        EXPECT_TRUE(std::isnan(metric.of(c))) << metric.name << " " << metric.of(c);
+    }
+}
+
+TEST(Metrics, AreFoundByTheirNames) {
+    for (const Metric& metric : metrics()) {
+        EXPECT_EQ(&find_metric("--stop-at", metric.name), &metric) << metric.name;
+    }
+    const auto error = test::thrown_by([] { find_metric("--stop-at", "relMSE"); });
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->code(), ExitCode::usage);
+    for (const char* part : {"--stop-at", "'relMSE'", "relmse_trimmed", "srgb_mse"}) {
+        EXPECT_NE(std::string(error->what()).find(part), std::string::npos) << part << " is not in: " << error->what();
+    }
 }
 
 TEST(Metrics, RefuseDifferentSizes) {

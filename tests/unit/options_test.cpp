@@ -47,6 +47,7 @@ TEST(Options, DefaultsAreThePapers) {
     EXPECT_EQ(options.settings.sectors, 6u);
     EXPECT_EQ(options.device.select, "");
     EXPECT_FALSE(options.device.validate);
+    EXPECT_FALSE(options.reference || options.stop_at);
     EXPECT_FALSE(options.png || options.stats || options.quiet || options.verbose);
 }
 
@@ -56,7 +57,12 @@ TEST(Options, EveryOptionReachesItsSetting) {
         "--iterations", "7", "--time", "2m", "--photons", "100", "--size", "32x16", "--camera", "top", "--seed", "5",
         "--max-depth", "9", "--knn", "11", "--alpha", "0.5", "--k", "0.25", "--beta", "1.5", "--significance", "0.01",
         "--rings", "3", "--sectors", "4", "--device", "uuid:00", "--quiet", "--verbose", "--validate",
-        "--environment", "sky.hdr", "--thin-glass", "solid", "--aperture", "0.01", "--focus-distance", "2.5"});
+        "--environment", "sky.hdr", "--thin-glass", "solid", "--aperture", "0.01", "--focus-distance", "2.5",
+        "--reference", "r.exr", "--stop-at", "relmse_trimmed=3.5e-3"});
+    EXPECT_EQ(options.reference, "r.exr");
+    ASSERT_TRUE(options.stop_at);
+    EXPECT_EQ(options.stop_at->metric->name, "relmse_trimmed");
+    EXPECT_EQ(options.stop_at->value, 0.0035);
     EXPECT_EQ(options.scene.environment, "sky.hdr");
     EXPECT_EQ(options.scene.thin_glass, ThinGlass::solid);
     EXPECT_EQ(options.settings.aperture, 0.01);
@@ -129,7 +135,7 @@ TEST(Options, HelpNamesEveryOptionAndEstimator) {
           "--max-depth", "--knn", "--alpha", "--k ", "--beta", "--significance", "--device", "--stats", "--quiet",
           "--verbose", "--png", "--exposure", "--rings", "--sectors", "--validate", "--version", "cppm", "sppm:",
           "sppm-kz", "compare", "info", "devices", "73", "--environment", "--thin-glass", "--aperture",
-          "--focus-distance"}) {
+          "--focus-distance", "--reference", "--stop-at", "smape_trimmed", "clock"}) {
         EXPECT_NE(help.find(name), std::string::npos) << name << " is not in\n" << help;
     }
     EXPECT_NE(std::get<TextOptions>(parse({"compare", "--help"})).text.find("REFERENCE"), std::string::npos);
@@ -196,6 +202,19 @@ TEST(Options, RefuseEveryBadLineWithOptionValueAndRange) {
         {{"s", "--size", "4294967296x1"}, {"--size", "'4294967296x1'"}},
         {{"s", "--exposure", "x", "--png", "p"}, {"--exposure", "'x'"}},
         {{"s", "--exposure", "1"}, {"--exposure", "--png"}},
+        {{"s", "--stop-at", "relmse=1"}, {"--stop-at", "--reference"}},
+        {{"s", "--reference", "r", "--stop-at", "relmse"}, {"--stop-at", "'relmse'", "METRIC=VALUE"}},
+        {{"s", "--reference", "r", "--stop-at", "0.1"}, {"--stop-at", "'0.1'", "METRIC=VALUE"}},
+        {{"s", "--reference", "r", "--stop-at", "=1"}, {"--stop-at", "''", "relmse_trimmed"}},
+        {{"s", "--reference", "r", "--stop-at", "flip=1"}, {"--stop-at", "'flip'", "relmse_trimmed", "smape"}},
+        {{"s", "--reference", "r", "--stop-at", "psnr=30"}, {"--stop-at", "'psnr'", "srgb_mse"}},
+        {{"s", "--reference", "r", "--stop-at", "mse="}, {"--stop-at", "'mse='", "greater than 0"}},
+        {{"s", "--reference", "r", "--stop-at", "mse=0"}, {"--stop-at", "'mse=0'", "greater than 0"}},
+        {{"s", "--reference", "r", "--stop-at", "mse=-1"}, {"--stop-at", "'mse=-1'", "greater than 0"}},
+        {{"s", "--reference", "r", "--stop-at", "mse=inf"}, {"--stop-at", "'mse=inf'", "finite"}},
+        {{"s", "--reference", "r", "--stop-at", "mse=nan"}, {"--stop-at", "'mse=nan'", "finite"}},
+        {{"s", "--reference", "r", "--stop-at", "mse=1 "}, {"--stop-at", "'mse=1 '"}},
+        {{"s", "--reference", "r", "--stop-at", "mse=1", "--stop-at", "mse=2"}, {"--stop-at"}},
         {{"compare"}, {"IMAGE"}},
         {{"compare", "a"}, {"REFERENCE"}},
         {{"compare", "a", "b", "c"}, {"c"}},

@@ -43,6 +43,16 @@ TEST(Progress, EndsByTimeOrByIterationsWhicheverIsSooner) {
     EXPECT_EQ(progress_text({16, 2147483647, 95.0}, 90.0), "16 iterations (100 %), 0 s left");
 }
 
+TEST(Progress, TellsTheLatestErrorAndHowOldItIs) {
+    const LatestError error{&find_metric("", "relmse"), 0.012345, 16};
+    EXPECT_EQ(progress_text({16, 64, 30.0, error}, std::nullopt),
+              "16/64 iterations (25 %), 1 min 30 s left, relmse 0.0123");
+    EXPECT_EQ(progress_text({32, 64, 30.0, error}, std::nullopt),
+              "32/64 iterations (50 %), 30 s left, relmse 0.0123 after 16");
+    EXPECT_EQ(written(false, std::nullopt, [&](ProgressLine& line) { line.finish({16, 64, 4.0, error}); }),
+              "16 iterations in 4.0 s, relmse 0.0123\n");
+}
+
 TEST(Progress, IsALineEveryTenSecondsWhereNobodyWatches) {
     const std::string text = written(false, std::nullopt, [](ProgressLine& line) {
         for (std::uint64_t i = 1; i <= 25; ++i) {
