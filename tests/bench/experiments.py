@@ -13,6 +13,7 @@ import os
 import pathlib
 import subprocess
 import sys
+import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 RACES = ROOT / "out" / "experiments"
@@ -49,7 +50,9 @@ def flags(**values):
 def reference_of(options, scene):
     """The reference, made where it is absent and that was asked for."""
     file = options.references / f"{scene}.exr"
-    if options.make_references and not file.exists():
+    if not file.exists():
+        if not options.make_references:
+            raise SystemExit(f"no reference {file}: make it by vkcppm reference, or here by --make-references TIME")
         print(f"reference of {scene}", file=sys.stderr)
         file.parent.mkdir(parents=True, exist_ok=True)
         subprocess.run([options.program, "reference", ROOT / "scenes" / f"{scene}.gltf", "-o", file, "--half",
@@ -133,16 +136,21 @@ def table(rows):
     return "\n".join([lines[0], "|" + "---|" * len(rows[0]), *lines[1:]]) + "\n"
 
 
+def paragraph(text):
+    """Markdown of lines of 120 columns, an empty one behind."""
+    return textwrap.fill(" ".join(text.split()), 120, break_long_words=False, break_on_hyphens=False) + "\n\n"
+
+
 def conditions(options, some_race):
     """What figures hold for, a paragraph; all but the scene is the same for all races of an experiment."""
     commit = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=ROOT, check=True, stdout=subprocess.PIPE,
                             text=True).stdout.strip()
     data = some_race.data
     settings = data["entrants"][0]["settings"]
-    return (f"Commit: {commit}. Device: {data['driver']}. {data['width']}x{data['height']} pixels, "
-            f"{settings['photons']:,} paths an iteration,\n{data['iterations']:,} iterations, k_NN = {settings['knn']}, "
-            f"{options.seeds} {'seed' if options.seeds == 1 else 'seeds'}. Error: {some_race.title}, against the scenes' "
-            f"references.\nSeconds are those of the passes, by the device's timestamps; estimators take turns.\n")
+    return paragraph(f"""Commit: {commit}. Device: {data['driver']}. {data['width']}x{data['height']} pixels,
+        {settings['photons']:,} paths an iteration, {data['iterations']:,} iterations, k_NN = {settings['knn']},
+        {options.seeds} {'seed' if options.seeds == 1 else 'seeds'}. Error: {some_race.title}, against the scenes'
+        references. Seconds are those of the passes, by the device's timestamps; estimators take turns.""")
 
 
 def write_figure(options, name, text):
