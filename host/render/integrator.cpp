@@ -29,18 +29,6 @@ constexpr std::uint32_t plan_interval = 16;            // iterations between pla
 /// True where the grid is planned before iteration i: 0, the powers of two, multiples of plan_interval.
 bool plans_grid(std::uint32_t i) { return (i & (i - 1)) == 0 || i % plan_interval == 0; }
 
-void set_camera(gpu::Params& params, const Camera& camera, const SceneFrame& frame, Extent size) {
-    const double half_height = std::tan(0.5 * camera.yfov);
-    const double half_width = half_height * double(size.width) / double(size.height);
-    params.eye = glm::vec3(frame.point(glm::dvec3(camera.to_world[3])));
-    params.right = glm::vec3(glm::dvec3(camera.to_world[0]) * half_width);
-    params.up = glm::vec3(glm::dvec3(camera.to_world[1]) * half_height);
-    params.forward = glm::vec3(-glm::dvec3(camera.to_world[2]));
-    params.width = size.width;
-    params.height = size.height;
-    params.pixel_radius = float(2.0 * half_height / double(size.height) / std::sqrt(std::numbers::pi));
-}
-
 void set_test(gpu::Params& params, const EstimatorRow& estimator, const Settings& settings) {
     const std::vector<float> thresholds =
         chi_squared_thresholds(estimator, settings.rings, settings.sectors, settings.significance);
@@ -58,30 +46,20 @@ void set_test(gpu::Params& params, const EstimatorRow& estimator, const Settings
 }  // namespace
 
 Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings)
-    : device_(device), bindings_(device), commands_(device, bindings_, timed_launches) {
+    : device_(device), bindings_(device), commands_(device, bindings_, timed_launches), buffers_(device, bindings_, scene) {
     const EstimatorRow& estimator = find_estimator(settings.estimator);
     const std::uint32_t features = bits_of(scene.features) | bits_of(features_of(settings));
     scale_ = scene.frame.scale;
     pixels_ = settings.size->pixels();
     for (const Pass pass : {Pass::eye, Pass::photon, Pass::knn, Pass::gather}) rounds_[pass] = 1;
 
-    set_camera(params_, camera, scene.frame, *settings.size);
+    params_ = scene_params(device, scene, camera, settings);
     set_test(params_, estimator, settings);
-    params_.seed = settings.seed;
-    params_.bounds_low = scene.low;
-    params_.bounds_high = scene.high;
     params_.photons = scene.lights.empty() ? 0 : settings.photons;
     params_.inverse_paths = params_.photons > 0 ? 1.0f / float(params_.photons) : 0.0f;
     params_.photons_per_lane = photons_per_lane;
     params_.photon_lanes = std::max(1u, (params_.photons + photons_per_lane - 1) / photons_per_lane);
     params_.photon_capacity = photons_per_lane * first_photon_capacity;
-    params_.max_depth = settings.max_depth;
-    params_.light_count = std::uint32_t(scene.lights.size());
-    params_.punctual_lights = scene.punctual_lights;
-    params_.environment = {scene.environment_size.width, scene.environment_size.height};
-    params_.lens_radius = float(0.5 * settings.aperture * scale_);
-    params_.focus_distance = float(settings.focus_distance.value_or(1.0) * scale_);
-    params_.step_budget = device.step_budget();
     params_.knn = settings.knn;
     params_.radius_cap = float(radius_cap * std::max(scene.radius, 1e-3));
     params_.scene_area = float(std::max(scene.area, 1e-12));
@@ -104,48 +82,32 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
                                 scene.triangles.size(), scene.bvh.nodes.size(), 1u << BVH_MAX_NODE_BITS));
     }
     using Kind = Buffer::Kind;
-    const auto upload = [&](std::uint32_t binding, const char* name, const auto& data, Kind kind) {
-        allocate(binding, name, data.size() * sizeof(data[0]), kind);
-        buffer(binding).upload(data);
-    };
-    upload(BIND_NODES, "bvh nodes", scene.bvh.nodes, Kind::uint_texels);
-    upload(BIND_TRIANGLES, "triangles", scene.triangles, Kind::float_texels);
-    upload(BIND_SHADING, "shading", scene.shading, Kind::uint_texels);
-    upload(BIND_MATERIALS, "materials", scene.materials, Kind::uint_texels);
-    upload(BIND_LIGHTS, "lights", scene.lights, Kind::uint_texels);
-    upload(BIND_TEXCOORDS, "texture coordinates", scene.texcoords, Kind::float_texels);
-    upload(BIND_VERTEX_COLORS, "vertex colours", scene.vertex_colors, Kind::uint_texels);
-    upload(BIND_TANGENTS, "tangents", scene.tangents, Kind::uint_texels);
-    upload(BIND_TEXTURES, "textures", scene.textures, Kind::uint_texels);
-    upload(BIND_TEXELS, "texels", scene.texels, Kind::word_texels);
-    upload(BIND_ENVIRONMENT, "environment", scene.environment, Kind::float_texels);
-    upload(BIND_ENVIRONMENT_ALIAS, "environment alias table", scene.environment_alias, Kind::word_texels);
-    allocate(BIND_PARAMS, "parameters", sizeof(gpu::Params), Kind::uniform);
-    allocate(BIND_STATUS, "status", sizeof(gpu::Status), Kind::storage);
-    allocate(BIND_GRID, "grid", sizeof(gpu::Grid), Kind::storage);
-    allocate(BIND_HIT_POSITION, "hit positions", pixels_ * sizeof(gpu::HitPosition), Kind::storage);
-    allocate(BIND_HIT_WEIGHT, "hit weights", pixels_ * sizeof(gpu::HitWeight), Kind::storage);
-    allocate(BIND_HIT_EMISSION, "hit emission", pixels_ * sizeof(gpu::HitEmission), Kind::storage);
-    allocate(BIND_GATHERED, "gathered", pixels_ * sizeof(gpu::Gathered), Kind::storage);
-    allocate(BIND_PIXELS, "pixels", pixels_ * sizeof(gpu::PixelState), Kind::storage);
+    buffers_.allocate(BIND_PARAMS, "parameters", sizeof(gpu::Params), Kind::uniform);
+    buffers_.allocate(BIND_STATUS, "status", sizeof(gpu::Status), Kind::storage);
+    buffers_.allocate(BIND_GRID, "grid", sizeof(gpu::Grid), Kind::storage);
+    buffers_.allocate(BIND_HIT_POSITION, "hit positions", pixels_ * sizeof(gpu::HitPosition), Kind::storage);
+    buffers_.allocate(BIND_HIT_WEIGHT, "hit weights", pixels_ * sizeof(gpu::HitWeight), Kind::storage);
+    buffers_.allocate(BIND_HIT_EMISSION, "hit emission", pixels_ * sizeof(gpu::HitEmission), Kind::storage);
+    buffers_.allocate(BIND_GATHERED, "gathered", pixels_ * sizeof(gpu::Gathered), Kind::storage);
+    buffers_.allocate(BIND_PIXELS, "pixels", pixels_ * sizeof(gpu::PixelState), Kind::storage);
     const std::uint64_t tallies = tally_rows(estimator, settings.rings, settings.sectors);
-    allocate(BIND_TALLY, "tally", tallies * pixels_ * sizeof(std::uint32_t), Kind::storage);
+    buffers_.allocate(BIND_TALLY, "tally", tallies * pixels_ * sizeof(std::uint32_t), Kind::storage);
     const std::uint64_t moments = moment_rows(estimator, settings.rings, settings.sectors);
-    allocate(BIND_MOMENTS, "moments", moments * pixels_ * sizeof(float), Kind::storage);
+    buffers_.allocate(BIND_MOMENTS, "moments", moments * pixels_ * sizeof(float), Kind::storage);
     const std::vector<float> quantiles =
         f_thresholds(estimator, settings.rings, settings.sectors, settings.significance);
-    upload(BIND_QUANTILES, "quantiles", quantiles, Kind::storage);
-    allocate(BIND_AOVS, "aovs", settings.aovs ? pixels_ * sizeof(gpu::Aovs) : 0, Kind::storage);
+    buffers_.upload(BIND_QUANTILES, "quantiles", quantiles, Kind::storage);
+    buffers_.allocate(BIND_AOVS, "aovs", settings.aovs ? pixels_ * sizeof(gpu::Aovs) : 0, Kind::storage);
     const bool glossy = (features & FEATURE_GLOSS) != 0;
-    allocate(BIND_HIT_SURFACE, "hit surfaces", glossy ? pixels_ * sizeof(gpu::HitSurface) : 0, Kind::storage);
-    allocate(BIND_FILM, "film", pixels_ * sizeof(gpu::Film), Kind::storage);
-    allocate(BIND_CURSOR, "cursors", pixels_ * sizeof(gpu::Cursor), Kind::storage);
-    allocate(BIND_NEAREST, "nearest", settings.knn * pixels_ * sizeof(float), Kind::storage);
-    allocate(BIND_IMAGE, "image", pixels_ * sizeof(gpu::vec3), Kind::storage);
-    allocate(BIND_PATHS, "paths", params_.photon_lanes * sizeof(gpu::PathState), Kind::storage);
+    buffers_.allocate(BIND_HIT_SURFACE, "hit surfaces", glossy ? pixels_ * sizeof(gpu::HitSurface) : 0, Kind::storage);
+    buffers_.allocate(BIND_FILM, "film", pixels_ * sizeof(gpu::Film), Kind::storage);
+    buffers_.allocate(BIND_CURSOR, "cursors", pixels_ * sizeof(gpu::Cursor), Kind::storage);
+    buffers_.allocate(BIND_NEAREST, "nearest", settings.knn * pixels_ * sizeof(float), Kind::storage);
+    buffers_.allocate(BIND_IMAGE, "image", pixels_ * sizeof(gpu::vec3), Kind::storage);
+    buffers_.allocate(BIND_PATHS, "paths", params_.photon_lanes * sizeof(gpu::PathState), Kind::storage);
     const std::uint64_t counters = std::uint64_t(params_.cells) + 1 + params_.photon_lanes + 1 +
                                    (std::uint64_t(params_.sort_lanes) << digit_bits_) + params_.scan_blocks;
-    allocate(BIND_COUNTERS, "counters", counters * sizeof(std::uint32_t), Kind::word_texels);
+    buffers_.allocate(BIND_COUNTERS, "counters", counters * sizeof(std::uint32_t), Kind::word_texels);
     bindings_.bind(BIND_COUNTER_TEXELS, buffer(BIND_COUNTERS));
     allocate_photons();
 
@@ -155,22 +117,16 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     compile(settings, scene.bvh, features);
 }
 
-void Integrator::allocate(std::uint32_t binding, const std::string& name, std::uint64_t bytes, Buffer::Kind kind) {
-    buffers_.erase(binding);
-    buffers_.emplace(binding, Buffer(device_, name, bytes, kind));
-    bindings_.bind(binding, buffers_.at(binding));
-}
-
 /// Buffers whose size follows the number of photons that a lane can store; again when a render needs more.
 void Integrator::allocate_photons() {
     using Kind = Buffer::Kind;
     const std::uint64_t slots = std::uint64_t(params_.photon_lanes) * params_.photon_capacity;
-    allocate(BIND_PHOTONS, "photons", slots * sizeof(gpu::Photon), Kind::storage);
-    allocate(BIND_PHOTON_FLUX, "photon flux", slots * sizeof(gpu::PhotonFlux), Kind::storage);
-    allocate(BIND_SORTED, "sorted photons", slots * sizeof(gpu::Photon), Kind::uint_texels);
-    allocate(BIND_SORTED_FLUX, "sorted photon flux", slots * sizeof(gpu::PhotonFlux), Kind::uint_texels);
-    allocate(BIND_PAIRS_A, "pairs a", slots * sizeof(gpu::uvec2), Kind::storage);
-    allocate(BIND_PAIRS_B, "pairs b", slots * sizeof(gpu::uvec2), Kind::storage);
+    buffers_.allocate(BIND_PHOTONS, "photons", slots * sizeof(gpu::Photon), Kind::storage);
+    buffers_.allocate(BIND_PHOTON_FLUX, "photon flux", slots * sizeof(gpu::PhotonFlux), Kind::storage);
+    buffers_.allocate(BIND_SORTED, "sorted photons", slots * sizeof(gpu::Photon), Kind::uint_texels);
+    buffers_.allocate(BIND_SORTED_FLUX, "sorted photon flux", slots * sizeof(gpu::PhotonFlux), Kind::uint_texels);
+    buffers_.allocate(BIND_PAIRS_A, "pairs a", slots * sizeof(gpu::uvec2), Kind::storage);
+    buffers_.allocate(BIND_PAIRS_B, "pairs b", slots * sizeof(gpu::uvec2), Kind::storage);
     bindings_.bind(BIND_SORTED_TEXELS, buffer(BIND_SORTED));
     bindings_.bind(BIND_FLUX_TEXELS, buffer(BIND_SORTED_FLUX));
     buffer(BIND_PARAMS).upload_value(params_);

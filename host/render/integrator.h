@@ -11,6 +11,7 @@
 #include "core/image.h"
 #include "render/flatten.h"
 #include "render/report.h"
+#include "render/scene_buffers.h"
 #include "render/settings.h"
 #include "vk/buffer.h"
 #include "vk/device.h"
@@ -59,7 +60,6 @@ private:
     /// Passes of an iteration, in order. The first four can run out of steps and go on in another round.
     enum class Pass { eye, photon, grid, knn, gather, update };
 
-    void allocate(std::uint32_t binding, const std::string& name, std::uint64_t bytes, Buffer::Kind kind);
     void allocate_photons();
     void compile(const Settings& settings, const Bvh& bvh, std::uint32_t features);
     void iterate(std::uint32_t iteration, Pass from, std::uint32_t first_round);
@@ -75,7 +75,7 @@ private:
     Bindings bindings_;
     Commands commands_;
     gpu::Params params_{};
-    std::map<std::uint32_t, Buffer> buffers_;
+    SceneBuffers buffers_;
     std::map<std::string, Kernel> kernels_;
     std::map<Pass, std::uint32_t> rounds_;
     std::vector<PassReport> passes_;

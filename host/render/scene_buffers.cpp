@@ -1,0 +1,64 @@
+#include "render/scene_buffers.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "shared/bindings.h"
+
+namespace vkcppm {
+namespace {
+
+void set_camera(gpu::Params& params, const Camera& camera, const SceneFrame& frame, Extent size) {
+    const double half_height = std::tan(0.5 * camera.yfov);
+    const double half_width = half_height * double(size.width) / double(size.height);
+    params.eye = glm::vec3(frame.point(glm::dvec3(camera.to_world[3])));
+    params.right = glm::vec3(glm::dvec3(camera.to_world[0]) * half_width);
+    params.up = glm::vec3(glm::dvec3(camera.to_world[1]) * half_height);
+    params.forward = glm::vec3(-glm::dvec3(camera.to_world[2]));
+    params.width = size.width;
+    params.height = size.height;
+    params.pixel_radius = float(2.0 * half_height / double(size.height) / std::sqrt(std::numbers::pi));
+}
+
+}  // namespace
+
+SceneBuffers::SceneBuffers(Device& device, Bindings& bindings, const FlatScene& scene)
+    : device_(device), bindings_(bindings) {
+    using Kind = Buffer::Kind;
+    upload(BIND_NODES, "bvh nodes", scene.bvh.nodes, Kind::uint_texels);
+    upload(BIND_TRIANGLES, "triangles", scene.triangles, Kind::float_texels);
+    upload(BIND_SHADING, "shading", scene.shading, Kind::uint_texels);
+    upload(BIND_MATERIALS, "materials", scene.materials, Kind::uint_texels);
+    upload(BIND_LIGHTS, "lights", scene.lights, Kind::uint_texels);
+    upload(BIND_TEXCOORDS, "texture coordinates", scene.texcoords, Kind::float_texels);
+    upload(BIND_VERTEX_COLORS, "vertex colours", scene.vertex_colors, Kind::uint_texels);
+    upload(BIND_TANGENTS, "tangents", scene.tangents, Kind::uint_texels);
+    upload(BIND_TEXTURES, "textures", scene.textures, Kind::uint_texels);
+    upload(BIND_TEXELS, "texels", scene.texels, Kind::word_texels);
+    upload(BIND_ENVIRONMENT, "environment", scene.environment, Kind::float_texels);
+    upload(BIND_ENVIRONMENT_ALIAS, "environment alias table", scene.environment_alias, Kind::word_texels);
+}
+
+void SceneBuffers::allocate(std::uint32_t binding, const std::string& name, std::uint64_t bytes, Buffer::Kind kind) {
+    buffers_.erase(binding);
+    buffers_.emplace(binding, Buffer(device_, name, bytes, kind));
+    bindings_.bind(binding, buffers_.at(binding));
+}
+
+gpu::Params scene_params(const Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings) {
+    gpu::Params params{};
+    set_camera(params, camera, scene.frame, *settings.size);
+    params.seed = settings.seed;
+    params.bounds_low = scene.low;
+    params.bounds_high = scene.high;
+    params.max_depth = settings.max_depth;
+    params.light_count = std::uint32_t(scene.lights.size());
+    params.punctual_lights = scene.punctual_lights;
+    params.environment = {scene.environment_size.width, scene.environment_size.height};
+    params.lens_radius = float(0.5 * settings.aperture * scene.frame.scale);
+    params.focus_distance = float(settings.focus_distance.value_or(1.0) * scene.frame.scale);
+    params.step_budget = device.step_budget();
+    return params;
+}
+
+}  // namespace vkcppm
