@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint32_t timed_launches = 2048;
 constexpr std::uint32_t workgroup = 64;
-constexpr std::uint32_t photons_per_lane = 16;
+constexpr std::uint32_t most_photons_per_lane = 64;
 constexpr std::uint32_t stride_invocations = 16384;    // of kernels that stride over their input
 constexpr std::uint32_t first_photon_capacity = 6;     // photons a path, before a render knows better
 constexpr double radius_cap = 0.2;                     // of the scene's radius
@@ -57,9 +57,10 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     set_test(params_, estimator, settings);
     params_.photons = scene.lights.empty() ? 0 : settings.photons;
     params_.inverse_paths = params_.photons > 0 ? 1.0f / float(params_.photons) : 0.0f;
-    params_.photons_per_lane = photons_per_lane;
-    params_.photon_lanes = std::max(1u, (params_.photons + photons_per_lane - 1) / photons_per_lane);
-    params_.photon_capacity = photons_per_lane * first_photon_capacity;
+    const std::uint32_t per_lane = std::clamp(params_.photons / device.busy_lanes(), 1u, most_photons_per_lane);
+    params_.photons_per_lane = per_lane;
+    params_.photon_lanes = std::max(1u, (params_.photons + per_lane - 1) / per_lane);
+    params_.photon_capacity = per_lane * first_photon_capacity;
     params_.knn = settings.knn;
     params_.radius_cap = float(radius_cap * std::max(scene.radius, 1e-3));
     params_.scene_area = float(std::max(scene.area, 1e-12));
@@ -176,9 +177,7 @@ void Integrator::build_grid(std::uint32_t i) {
         scan(i, radix_at, params_.sort_lanes << digit_bits_);
         launch("radix_scatter", params_.sort_lanes, push);
     }
-    gpu::Launch order = plain;
-    order.count = digits_ % 2;
-    launch("grid_order", stride_invocations, order);
+    launch("grid_order", stride_invocations, plain);
     scan(i, 0, params_.cells + 1);  // photons before each cell
 }
 

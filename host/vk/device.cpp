@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
+#include <thread>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -263,6 +264,12 @@ std::uint32_t Device::step_budget() const {
     // A group's trips are at most the sum over its lanes; a kernel may overdraw its budget by a few hundred.
     // Elsewhere: counters of 16 bits of the gather never overflow in a dispatch.
     return impl_->loop_limit ? 65535 / impl_->subgroup_size - 1024 : 65535 - 1024;
+}
+
+std::uint32_t Device::busy_lanes() const {
+    if (impl_->info.type != "cpu") return 1u << 17;
+    // Few, so that none is idle for long while the last of its SIMD group ends; enough work groups for every core.
+    return 512 * std::max(1u, std::thread::hardware_concurrency());
 }
 
 std::uint64_t Device::allocated_bytes() const { return impl_->allocated; }

@@ -42,6 +42,8 @@ public:
     bool validating() const;
     /// Loop trips that one invocation may make in one dispatch, with certainty within the driver's limits.
     std::uint32_t step_budget() const;
+    /// Invocations that keep it busy: work with a choice is cut into about as many.
+    std::uint32_t busy_lanes() const;
     /// Bytes of buffers alive now, and at most so far.
     std::uint64_t allocated_bytes() const;
     std::uint64_t peak_bytes() const;

@@ -5,6 +5,9 @@ layout(binding = BIND_GRID, scalar) buffer GridBlock { Grid grid; };
 
 #define HASH_RUN 8
 
+// Radix passes that sorting by cell takes: those whose digit is not 0 for all entries.
+uint sort_passes() { return (uint(findMSB(max(grid.entries - 1u, 1u))) + DIGIT_BITS) / DIGIT_BITS; }
+
 ivec3 cell_of(vec3 position) { return ivec3(floor((position - grid.origin) * grid.inverse_cell)); }
 
 ivec3 clamp_cell(ivec3 cell) { return clamp(cell, ivec3(0), ivec3(grid.dims.xyz) - 1); }

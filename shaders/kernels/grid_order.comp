@@ -1,7 +1,8 @@
 #version 460
 // Copies the photons into the order of their cells, so that a row of cells is one run of memory. Reads photons and the
-// sorted pairs (launch.count: which); writes sorted, sorted_flux. Invocations stride over the photons.
+// sorted pairs; writes sorted, sorted_flux. Invocations stride over the photons.
 #include "include/kernel.glsl"
+#include "include/grid.glsl"
 #include "include/counters.glsl"
 
 layout(binding = BIND_PAIRS_A, scalar) buffer PairBlockA { uvec2 pairs_a[]; };
@@ -14,10 +15,11 @@ layout(binding = BIND_COUNTERS, scalar) readonly buffer CounterBlock { uint coun
 
 void main() {
     if (blocked(0u)) return;
+    bool in_a = sort_passes() % 2u == 0u;
     uint total = counters[PHOTON_TOTAL];
     uint stride = gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_WorkGroupSize.x;
     for (uint i = invocation(); i < total; i += stride) {
-        uint slot = launch.count == 0u ? pairs_a[i].y : pairs_b[i].y;
+        uint slot = in_a ? pairs_a[i].y : pairs_b[i].y;
         sorted[i] = photons[slot];
         sorted_flux[i] = photon_flux[slot];
     }

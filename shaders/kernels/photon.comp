@@ -23,8 +23,6 @@ layout(binding = BIND_PHOTON_FLUX, scalar) writeonly buffer FluxBlock { PhotonFl
 layout(binding = BIND_PATHS, scalar) buffer PathBlock { PathState paths[]; };
 layout(binding = BIND_COUNTERS, scalar) writeonly buffer CounterBlock { uint counters[]; };
 
-#define FIRST_ROULETTE 4u  // bounce from which Russian roulette decides whether a path goes on
-
 // Under shading normals scattering is not symmetric: the factor |wi.ns wo.ng| / |wi.ng wo.ns| of Veach 1997, section
 // 5.3, keeps photons and eye paths consistent. `before`, `after`: directions of travel.
 float shading_correction(Surface surface, vec3 before, vec3 after) {
@@ -132,7 +130,7 @@ void main() {
             }
             float brightest = largest(state.power);
             alive = alive && bounces < params.max_depth && brightest > 0.0;
-            if (alive && bounces >= FIRST_ROULETTE) {
+            if (alive) {
                 // Survivors carry as much as they started with: photons of nearly equal weight.
                 float survival = min(1.0, brightest / state.power0);
                 alive = u.z < survival;

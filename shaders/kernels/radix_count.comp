@@ -4,6 +4,7 @@
 // never depends on scheduling. launch.offset: shift of the digit; launch.count: which pairs are read.
 // Stable because columns are in order of the pairs and a column keeps their order. O(pairs / columns + digits).
 #include "include/kernel.glsl"
+#include "include/grid.glsl"
 #include "include/counters.glsl"
 
 layout(binding = BIND_PAIRS_A, scalar) buffer PairBlockA { uvec2 pairs_a[]; };
@@ -12,7 +13,7 @@ layout(binding = BIND_COUNTERS, scalar) buffer CounterBlock { uint counters[]; }
 
 void main() {
     uint lane = invocation();
-    if (lane >= params.sort_lanes || blocked(0u)) return;
+    if (lane >= params.sort_lanes || launch.offset >= sort_passes() * DIGIT_BITS || blocked(0u)) return;
     const uint digits = 1u << DIGIT_BITS;
     for (uint digit = 0u; digit < digits; ++digit) counters[RADIX_COUNTS + digit * params.sort_lanes + lane] = 0u;
     uint total = counters[PHOTON_TOTAL];

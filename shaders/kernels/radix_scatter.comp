@@ -2,6 +2,7 @@
 // Stable radix sort, step 2 of 2: after the scan of the histogram, every invocation moves its consecutive pairs to
 // their places. launch.offset: shift of the digit; launch.count: which pairs are read. O(pairs / columns).
 #include "include/kernel.glsl"
+#include "include/grid.glsl"
 #include "include/counters.glsl"
 
 layout(binding = BIND_PAIRS_A, scalar) buffer PairBlockA { uvec2 pairs_a[]; };
@@ -10,7 +11,7 @@ layout(binding = BIND_COUNTERS, scalar) buffer CounterBlock { uint counters[]; }
 
 void main() {
     uint lane = invocation();
-    if (lane >= params.sort_lanes || blocked(0u)) return;
+    if (lane >= params.sort_lanes || launch.offset >= sort_passes() * DIGIT_BITS || blocked(0u)) return;
     const uint digits = 1u << DIGIT_BITS;
     uint total = counters[PHOTON_TOTAL];
     uint size = (total + params.sort_lanes - 1u) / params.sort_lanes;

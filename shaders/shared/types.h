@@ -297,6 +297,7 @@ struct Grid {
     float inverse_cell;
     uvec4 dims;        // cells an axis; w: 0 dense rows, else mask of the hash table
     float cell;
+    uint entries;      // of the table of cell starts, in use: at most params.cells
 };
 
 // Passes that can run out of their step budget.

@@ -43,7 +43,7 @@ struct PhotonSet {
 
 PhotonSet photons_of(Rig& rig) {
     const auto counters = rig.all<std::uint32_t>(BIND_COUNTERS);
-    const std::size_t count = counters[rig.integrator.params().cells];
+    const std::size_t count = counters[rig.integrator.buffer(BIND_GRID).download_value<gpu::Grid>().entries];
     const auto sorted = rig.all<gpu::Photon>(BIND_SORTED);
     const auto flux = rig.all<gpu::PhotonFlux>(BIND_SORTED_FLUX);
     PhotonSet set;
@@ -282,7 +282,7 @@ TEST_F(Gather, SumsCountsAndTalliesAreThoseOfAllPhotons) {
             ASSERT_LE(differences, 2 * doubt.cells) << where(i, *point, radius2);
             doubtful_cells += doubt.cells > 0 ? 1 : 0;
         }
-        EXPECT_GT(photons, 20u * rig.pixels()) << "too few photons to mean anything";
+        EXPECT_GT(photons, 10u * rig.pixels()) << "too few photons to mean anything";
         EXPECT_GT(smooth, 50u) << "pixels on shaded normals";
         EXPECT_LT(doubtful_pixels, rig.pixels() / 50);
         EXPECT_LT(doubtful_cells, rig.pixels() / 20);
@@ -326,7 +326,7 @@ TEST_F(Gather, AFoldedTallyAddsOppositeSectors) {
             }
         }
     }
-    EXPECT_GT(sum, 20 * p);
+    EXPECT_GT(sum, 10 * p) << "too few photons to mean anything";
 }
 
 }  // namespace

@@ -58,6 +58,8 @@ protected:
         if (hashed) {
             EXPECT_EQ(grid.dims.w, params.cells - 1);
         }
+        ASSERT_EQ(grid.entries, hashed ? params.cells : grid.dims.x * grid.dims.y * grid.dims.z);
+        ASSERT_LE(grid.entries, params.cells);
         for (int axis = 0; axis < 3; ++axis) {
             EXPECT_GE(grid.origin[axis] + float(grid.dims[axis]) * grid.cell, params.bounds_high[axis])
                 << "axis " << axis;
@@ -93,13 +95,13 @@ protected:
         }
         const auto counters = rig.all<std::uint32_t>(BIND_COUNTERS);
         std::size_t next = 0, occupied = 0;
-        for (std::uint32_t cell = 0; cell < params.cells; ++cell) {
-            ASSERT_EQ(counters[cell], next) << "start of cell " << cell << " of " << params.cells;
+        for (std::uint32_t cell = 0; cell < grid.entries; ++cell) {
+            ASSERT_EQ(counters[cell], next) << "start of cell " << cell << " of " << grid.entries;
             const std::size_t begin = next;
             while (next < entries.size() && entries[next].cell == cell) ++next;
             occupied += next > begin ? 1 : 0;
         }
-        ASSERT_EQ(counters[params.cells], entries.size()) << "the end of the last cell";
+        ASSERT_EQ(counters[grid.entries], entries.size()) << "the end of the last cell";
         EXPECT_GT(occupied, 30u) << "too few cells to mean anything";
     }
 };
@@ -143,12 +145,21 @@ TEST_F(GridOrder, ExclusiveScanOfAnyRange) {
     const gpu::Params& params = rig.integrator.params();
     std::mt19937 random(14);
     const std::uint32_t limit = params.cells + 1 + params.photon_lanes + 1 + params.sort_lanes * 64;
-    for (const auto& [offset, count] : {std::pair(0u, 1u), std::pair(0u, 4096u), std::pair(5u, 4097u),
-                                        std::pair(17u, 100u), std::pair(0u, limit), std::pair(1u, 65535u)}) {
+    // What stands at 0 is the table of cells: of it only the entries in use are scanned, and the end of the last.
+    struct Case {
+        std::uint32_t offset, count, entries;
+    };
+    for (const auto& [offset, asked, entries] :
+         {Case{0, 1, limit}, Case{0, 4096, limit}, Case{5, 4097, 10}, Case{17, 100, 10}, Case{0, limit, limit},
+          Case{0, limit, 5000}, Case{1, 65535, 10}}) {
+        const std::uint32_t count = offset == 0 ? std::min(asked, entries + 1) : asked;
+        gpu::Grid grid{};
+        grid.entries = entries;
+        rig.integrator.buffer(BIND_GRID).upload_value(grid);
         std::vector<std::uint32_t> values(words);
         for (auto& value : values) value = random() % 200000u;  // the largest sums wrap, here as there
         rig.integrator.buffer(BIND_COUNTERS).upload(values);
-        const gpu::Launch launch{.iteration = 0, .round = 0, .last_round = 1, .offset = offset, .count = count};
+        const gpu::Launch launch{.iteration = 0, .round = 0, .last_round = 1, .offset = offset, .count = asked};
         rig.integrator.run_kernel("scan_sums", 4096, launch);
         rig.integrator.run_kernel("scan_blocks", 64, launch);
         rig.integrator.run_kernel("scan_apply", 4096, launch);

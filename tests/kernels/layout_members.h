@@ -27,7 +27,7 @@
 #define MEMBERS_FILM X(sum) X(low)
 #define MEMBERS_PATH_STATE X(origin) X(path) X(direction) X(memory) X(power) X(stored) X(power0)
 #define MEMBERS_CURSOR X(cell) X(photon)
-#define MEMBERS_GRID X(origin) X(inverse_cell) X(dims) X(cell)
+#define MEMBERS_GRID X(origin) X(inverse_cell) X(dims) X(cell) X(entries)
 #define MEMBERS_STATUS X(blocked) X(completed) X(capacity) X(stuck) X(invalid) X(rays) \
     X(stored) X(unused) X(radius_histogram)
 #define MEMBERS_PARAMS \

@@ -100,23 +100,26 @@ TEST_F(Photons, LieOnDiffuseSurfacesOnTheSideTheyCameFrom) {
                   .back());
 }
 
-TEST_F(Photons, CarryAllOfTheFluxBeforeRouletteBegins) {
-    // In a closed room every path stores a photon a bounce; of max_depth bounces b carries rho^(b - 1) of the flux.
-    const float albedo = 0.6f;
+TEST_F(Photons, AllCarryWhatTheirPathStartedWithInAGreyRoom) {
+    // Roulette lets as many paths go on as the surface reflects of their power: in a closed room of albedo rho a path
+    // stores b photons or more with probability rho^(b - 1), and each carries the same.
+    const double albedo = 0.6;
+    const double flux = pi * 0.25 * 5.0;  // the lamp's: pi times area times radiance
     for (const std::uint32_t depth : {1u, 2u, 4u}) {
-        Rig rig(bare_room(albedo), with_photons(4096, depth));
+        Rig rig(bare_room(float(albedo)), with_photons(4096, depth));
         rig.integrator.run(1);
-        double sum = 0.0;
-        std::size_t count = 0;
+        double count = 0.0;
         for (const auto& lane : stored_photons(rig)) {
-            sum += lane_power(rig, lane);
-            count += lane.size();
+            count += double(lane.size());
+            EXPECT_NEAR(lane_power(rig, lane), flux * double(lane.size()), 1e-5 * flux * double(lane.size()));
         }
-        const double flux = pi * 0.25 * 5.0;  // the lamp's: pi times area times radiance
-        double expected = 0.0;
-        for (std::uint32_t b = 0; b < depth; ++b) expected += flux * std::pow(double(albedo), b);
-        EXPECT_EQ(count, 4096u * depth) << "depth " << depth;
-        EXPECT_NEAR(sum / 4096.0, expected, 1e-5 * expected) << "depth " << depth;
+        double expected = 0.0, square = 0.0;  // of the photons of a path
+        for (std::uint32_t b = 1; b <= depth; ++b) {
+            expected += std::pow(albedo, b - 1.0);
+            square += (2.0 * b - 1.0) * std::pow(albedo, b - 1.0);
+        }
+        const double error = std::sqrt(4096.0 * (square - expected * expected));
+        EXPECT_NEAR(count, 4096.0 * expected, 4.0 * error) << "photons of 4096 paths of " << depth << " bounces";
     }
 }
 
@@ -125,11 +128,11 @@ TEST_F(Photons, CarryTheSameFluxOnAverageUnderRoulette) {
         const std::uint32_t depth = 40;
         Rig rig(bare_room(albedo), with_photons(65536, depth));
         rig.integrator.run(1);
-        // Lanes are independent: 4096 samples of 16 paths each.
+        // Lanes are independent samples.
         const auto lanes = stored_photons(rig);
         double sum = 0.0, squares = 0.0;
         for (const auto& lane : lanes) {
-            const double power = lane_power(rig, lane) / 16.0;
+            const double power = lane_power(rig, lane) / rig.integrator.params().photons_per_lane;
             sum += power;
             squares += power * power;
         }
