@@ -109,21 +109,30 @@ Traversal no_traversal() {
         }                                                                                     \
     }
 
-// Goes on with the lanes' rays until they are done or out of `steps`, or, where `leave_early`, until those that wait for
-// the others are as many. Spends `steps`, one a loop trip; it may overdraw them by the height of the stack.
+// Whether the SIMD group should leave what `busy` lanes of it do, for what `idle` ones wait for: when none is busy, or at
+// most `share` times as many as wait.
+bool should_leave(bool busy, bool idle, float share) {
+    uint counts = subgroupAdd(busy ? 1u : idle ? 0x10000u : 0u);
+    return float(counts & 0xffffu) <= share * float(counts >> 16u);
+}
+
+// Shares of should_leave, measured on software Vulkan: of lanes within the tree, for those with a leaf; of lanes with a
+// ray, for those that could take another one.
+#define INNER_SHARE 0.5
+#define RAY_SHARE 1.0
+
+// Goes on with the lanes' rays until they are done or out of `steps`, or, where they are `independent`, until too few
+// lanes are left for those that wait: `running` lanes without a ray. Spends `steps`, one a loop trip; it may overdraw
+// them by the height of the stack.
 // The loops go on while any lane of the SIMD group needs them, with every lane in them: what a lane does not need it does
 // without effect. So a push is a store by all lanes, without a branch for each that guesses wrong.
-void traverse(inout Traversal t, inout int steps, bool leave_early, bool waiting_counts) {
+void traverse(inout Traversal t, inout int steps, bool independent, bool running) {
     while (true) {
         bool goes_on = t.node != NO_NODE && steps > 0;
-        if (leave_early) {
-            uvec2 counts = subgroupAdd(uvec2(goes_on, !goes_on && waiting_counts));
-            if (counts.x <= counts.y) break;
-        } else {
-            if (!subgroupAny(goes_on)) break;
-        }
-        while (subgroupAny(t.node < BVH_LEAF && steps > 0)) {
+        if (should_leave(goes_on, running, independent ? RAY_SHARE : 0.0)) break;
+        while (true) {
             bool inner = t.node < BVH_LEAF && steps > 0;
+            if (should_leave(inner, goes_on, independent ? INNER_SHARE : 0.0)) break;
             steps -= int(inner);
             int texel = inner ? int(t.node) * 4 : 0;
             uvec4 a = texelFetch(nodes, texel);
