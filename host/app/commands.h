@@ -10,6 +10,10 @@ namespace vkcppm {
 /// was asked for and had something to say.
 void execute(const RenderOptions& options);
 
+/// Races estimators and writes the folder: page, curves, settings, pictures. After SIGINT or SIGTERM the submission is
+/// finished and what there is is written. Throws Error(usage) where there is no reference for the scene.
+void execute(const RaceOptions& options);
+
 /// Prints the measures of core/metrics.h.
 void execute(const CompareOptions& options);
 

@@ -23,4 +23,10 @@ void print_message(std::string_view message) {
     std::fputs(line.c_str(), stderr);
 }
 
+void print_warnings(std::span<const std::string> warnings) {
+    for (const std::string& warning : warnings) {
+        print_message("warning: " + warning);
+    }
+}
+
 }  // namespace vkcppm

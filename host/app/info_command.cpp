@@ -230,9 +230,7 @@ std::string plain_text(const Scene& scene, const std::vector<Feature>& features)
 
 void execute(const InfoOptions& options) {
     const Scene scene = load_scene(options.scene);
-    for (const std::string& warning : scene.warnings) {
-        print_message("warning: " + warning);
-    }
+    print_warnings(scene.warnings);
     const std::vector<Feature> features = flatten(scene).features;
     print_result(options.json ? json_text(scene, features) : plain_text(scene, features));
 }

@@ -4,12 +4,14 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/error.h"
 #include "render/estimators.h"
@@ -18,6 +20,8 @@ namespace vkcppm {
 namespace {
 
 using Words = std::vector<std::string>;
+
+constexpr double race_seconds = 60.0;  // of each entrant with each seed, where nothing else bounds them
 
 constexpr const char* footer = R"(Exit codes:
   0 done   2 usage   65 bad scene   66 no such file   69 no usable Vulkan device   70 internal
@@ -147,6 +151,51 @@ std::string estimator_help() {
     return help;
 }
 
+/// What every way of making a picture takes, whatever the estimator: photons, film, camera, seed, depth.
+void add_common(CLI::App& app, Settings& settings) {
+    const Settings standard;
+    add(app, "--photons", "N", settings.photons, parse_whole,
+        fmt::format("Light paths emitted an iteration (default: {})", standard.photons));
+    add(app, "--size", "WxH", settings.size, parse_size,
+        "Pixels (default: 512 on the longer side, in the camera's aspect)");
+    app.add_option("--camera", settings.camera, "Camera by name or index (default: the first)")
+        ->type_name("NAME|INDEX");
+    add(app, "--aperture", "METRES", settings.aperture, parse_real,
+        "Diameter of the lens; what is not at --focus-distance is blurred (default: 0, all is sharp)");
+    add(app, "--focus-distance", "METRES", settings.focus_distance, parse_real,
+        "From the camera along its axis to what is sharp; goes with --aperture");
+    add(app, "--seed", "N", settings.seed, parse_whole,
+        fmt::format("Same seed, same picture (default: {})", standard.seed));
+    add(app, "--max-depth", "N", settings.max_depth, parse_whole,
+        fmt::format("Bounces of a path (default: {})", standard.max_depth));
+}
+
+/// The parameters of the estimators.
+void add_parameters(CLI::App& app, Settings& settings) {
+    const Settings standard;
+    add(app, "--knn", "N", settings.knn, parse_whole,
+        fmt::format("The starting radius reaches this many photons (default: {})", standard.knn));
+    add(app, "--alpha", "X", settings.alpha, parse_real,
+        fmt::format("sppm, sppm-kz: how slowly the radius shrinks (default: {:.3g})", standard.alpha));
+    add(app, "--k", "X", settings.k, parse_real,
+        fmt::format("cppm, ftest: factor of the area after a rejection (default: {})", standard.k));
+    add(app, "--beta", "X", settings.beta, parse_real,
+        fmt::format("cppm, ftest: growth of the batch after a rejection (default: {})", standard.beta));
+    add(app, "--significance", "X", settings.significance, parse_real,
+        fmt::format("cppm, ftest: level of each test (default: {})", standard.significance));
+    add(app, "--rings", "N", settings.rings, parse_whole,
+        fmt::format("cppm, ftest: rings of the disc (default: {})", standard.rings));
+    add(app, "--sectors", "N", settings.sectors, parse_whole,
+        fmt::format("cppm, ftest: sectors of the disc: 4, 6, 8 or 12 (default: {})", standard.sectors));
+}
+
+void add_device(CLI::App& app, Device::Options& device) {
+    app.add_option("--device", device.select, "Vulkan device; vkcppm devices lists them (default: the fastest)")
+        ->type_name("NAME|INDEX|uuid:...");
+    app.add_flag("--validate", device.validate,
+                 "Load the validation layer; its messages make the exit code 70");
+}
+
 Options parse_render(const Words& words) {
     const Settings standard;
     RenderOptions options;
@@ -155,7 +204,7 @@ Options parse_render(const Words& words) {
     std::string text;
 
     CLI::App app("Renders a glTF scene by progressive photon mapping on a Vulkan device.\n"
-                 "Other commands: vkcppm compare, vkcppm info, vkcppm devices; each has its own --help.\n"
+                 "Other commands: vkcppm race, vkcppm compare, vkcppm info, vkcppm devices; each has its own --help.\n"
                  "A scene of such a name is given as ./compare.",
                  "vkcppm");
     app.footer(footer);
@@ -182,41 +231,12 @@ Options parse_render(const Words& words) {
         "Stop after the first iteration after which the error is at most this, such as relmse_trimmed=0.0035;\n"
         "one of " + metric_names())
         ->needs("--reference");
-    add(app, "--photons", "N", options.settings.photons, parse_whole,
-        fmt::format("Light paths emitted an iteration (default: {})", standard.photons));
-    add(app, "--size", "WxH", options.settings.size, parse_size,
-        "Pixels (default: 512 on the longer side, in the camera's aspect)");
-    app.add_option("--camera", options.settings.camera, "Camera by name or index (default: the first)")
-        ->type_name("NAME|INDEX");
-    add(app, "--aperture", "METRES", options.settings.aperture, parse_real,
-        "Diameter of the lens; what is not at --focus-distance is blurred (default: 0, all is sharp)");
-    add(app, "--focus-distance", "METRES", options.settings.focus_distance, parse_real,
-        "From the camera along its axis to what is sharp; goes with --aperture");
-    add(app, "--seed", "N", options.settings.seed, parse_whole,
-        fmt::format("Same seed, same picture (default: {})", standard.seed));
-    add(app, "--max-depth", "N", options.settings.max_depth, parse_whole,
-        fmt::format("Bounces of a path (default: {})", standard.max_depth));
-    add(app, "--knn", "N", options.settings.knn, parse_whole,
-        fmt::format("The starting radius reaches this many photons (default: {})", standard.knn));
-    add(app, "--alpha", "X", options.settings.alpha, parse_real,
-        fmt::format("sppm, sppm-kz: how slowly the radius shrinks (default: {:.3g})", standard.alpha));
-    add(app, "--k", "X", options.settings.k, parse_real,
-        fmt::format("cppm, ftest: factor of the area after a rejection (default: {})", standard.k));
-    add(app, "--beta", "X", options.settings.beta, parse_real,
-        fmt::format("cppm, ftest: growth of the batch after a rejection (default: {})", standard.beta));
-    add(app, "--significance", "X", options.settings.significance, parse_real,
-        fmt::format("cppm, ftest: level of each test (default: {})", standard.significance));
-    add(app, "--rings", "N", options.settings.rings, parse_whole,
-        fmt::format("cppm, ftest: rings of the disc (default: {})", standard.rings));
-    add(app, "--sectors", "N", options.settings.sectors, parse_whole,
-        fmt::format("cppm, ftest: sectors of the disc: 4, 6, 8 or 12 (default: {})", standard.sectors));
+    add_common(app, options.settings);
+    add_parameters(app, options.settings);
     app.add_flag("--aovs", options.settings.aovs,
                  "Add channels to the EXR: ppm.radius, ppm.photons, ppm.batch, ppm.rejections, ppm.statistic,\n"
                  "ppm.iterations, and Z, Albedo, N of the first surfaces");
-    app.add_option("--device", options.device.select, "Vulkan device; vkcppm devices lists them (default: the fastest)")
-        ->type_name("NAME|INDEX|uuid:...");
-    app.add_flag("--validate", options.device.validate,
-                 "Load the validation layer; its messages make the exit code 70");
+    add_device(app, options.device);
     app.add_option("--stats", options.stats, "Times and counts of the render")->type_name("FILE.json");
     app.add_flag("--quiet", options.quiet, "No progress, only warnings and errors");
     app.add_flag("--verbose", options.verbose, "Times of the passes at the end");
@@ -229,6 +249,109 @@ Options parse_render(const Words& words) {
         options.settings.iterations = *iterations;
     } else if (options.settings.seconds) {
         options.settings.iterations = unbounded_iterations;
+    }
+    return options;
+}
+
+/// NAME or NAME:PARAMETER=VALUE:..., the parameters of add_parameters; the rest as in `common`.
+Entrant parse_entrant(const std::string& text, const Settings& common) {
+    std::vector<std::string> parts;
+    std::istringstream stream(text);
+    for (std::string part; std::getline(stream, part, ':');) {
+        parts.push_back(part);
+    }
+    Entrant entrant{text, common};
+    entrant.settings.estimator = find_estimator(parts.empty() ? "" : parts.front()).name;
+    CLI::App app("", "--estimators");
+    add_parameters(app, entrant.settings);
+    app.set_help_flag();
+    Words names, words;
+    for (const CLI::Option* option : app.get_options()) {
+        names.push_back(option->get_name().substr(2));
+    }
+    for (std::size_t i = 1; i < parts.size(); ++i) {
+        const std::size_t equals = parts[i].find('=');
+        const std::string name = parts[i].substr(0, equals);
+        if (equals == std::string::npos || std::ranges::find(names, name) == names.end()) {
+            refuse("--estimators", text, fmt::format("NAME:PARAMETER=VALUE:... with parameters of {}: '{}'",
+                                                     fmt::join(names, ", "), parts[i]));
+        }
+        words.insert(words.end(), {"--" + name, parts[i].substr(equals + 1)});
+    }
+    try {
+        app.parse(Words(words.rbegin(), words.rend()));
+    } catch (const CLI::ParseError& error) {
+        throw Error(ExitCode::usage, fmt::format("--estimators: '{}': {}", text, error.what()));
+    }
+    return entrant;
+}
+
+/// A word as a shell takes it.
+std::string quoted(const std::string& word) {
+    const char* plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=.,:/@%";
+    if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) {
+        return word;
+    }
+    std::string text = "'";
+    for (const char c : word) {
+        text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    }
+    return text + "'";
+}
+
+Options parse_race(const Words& words) {
+    RaceOptions options;
+    Settings settings;
+    std::string estimators = "cppm,sppm,appm";
+    std::optional<std::uint32_t> iterations;
+    std::string text;
+
+    CLI::App app("Renders a scene by several estimators side by side and compares their errors: against iterations,\n"
+                 "against time, at every pixel. Open DIR/index.html in a browser.",
+                 "vkcppm race");
+    app.footer(footer);
+    add_scene(app, options.scene);
+    app.add_option("-o", options.folder, "Folder for the page, curves and pictures; made where there is none")
+        ->required()
+        ->type_name("DIR");
+    app.add_option("--estimators", estimators,
+                   fmt::format("Who takes part, parameters behind a colon: cppm,cppm:beta=1.5:k=0.7,sppm\n"
+                               "(default: {}). The same seed means the same photon paths for all, and the same\n"
+                               "starting radii unless they differ in knn", estimators))
+        ->type_name("NAME[:PARAMETER=VALUE]...,...");
+    add(app, "--time", "TIME", settings.seconds, parse_seconds,
+        fmt::format("What each gets for each seed, on a clock that runs during its passes alone (default: {:g}s)",
+                    race_seconds));
+    add(app, "--iterations", "N", iterations, parse_whole,
+        "What each gets for each seed; with --time, what comes first");
+    add(app, "--seeds", "N", options.race.seeds, parse_whole,
+        "Repeat with so many seeds, from --seed on: two or more give confidence intervals (default: 1)");
+    app.add_option("--reference", options.reference,
+                   "What errors are measured against; without --size it tells the size\n"
+                   "(default: references/NAME.exr beside the scene)")
+        ->type_name("REF.exr");
+    add(app, "--exposure", "EV", options.exposure, parse_real, "Stops by which pictures are brightened (default: 0)");
+    add_common(app, settings);
+    add_parameters(app, settings);
+    add_device(app, options.device);
+    app.add_flag("--quiet", options.quiet, "No progress, only warnings and errors");
+    if (!parse(app, words, text)) {
+        return TextOptions{text};
+    }
+    if (options.race.seeds == 0) {
+        refuse("--seeds", "0", "at least 1");
+    }
+    if (!iterations && !settings.seconds) {
+        settings.seconds = race_seconds;
+    }
+    settings.iterations = iterations.value_or(unbounded_iterations);
+    std::istringstream stream(estimators + ",");
+    for (std::string entrant; std::getline(stream, entrant, ',');) {
+        options.race.entrants.push_back(parse_entrant(entrant, settings));
+    }
+    options.command = "vkcppm race";
+    for (const std::string& word : words) {
+        options.command += " " + quoted(word);
     }
     return options;
 }
@@ -275,6 +398,9 @@ Options parse_options(int argc, const char* const* argv) {
     const Words words(argv + std::min(argc, 1), argv + argc);
     const std::string command = words.empty() ? "" : words.front();
     const auto arguments = [&] { return Words(words.begin() + 1, words.end()); };
+    if (command == "race") {
+        return parse_race(arguments());
+    }
     if (command == "compare") {
         return parse_compare(arguments());
     }

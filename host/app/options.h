@@ -5,8 +5,10 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "core/metrics.h"
+#include "render/race.h"
 #include "render/settings.h"
 #include "vk/device.h"
 
@@ -50,6 +52,18 @@ struct CompareOptions {
     bool json = false;
 };
 
+/// vkcppm race SCENE
+struct RaceOptions {
+    SceneOptions scene;
+    RaceSettings race;                                  // ranges unchecked: resolve_race does that
+    std::optional<std::filesystem::path> reference;     // EXR; by default references/NAME.exr beside the scene
+    std::filesystem::path folder;                       // of all that is written
+    double exposure = 0.0;                              // stops, for the pictures
+    Device::Options device;
+    bool quiet = false;
+    std::string command;                                // this command line, to be given to a shell again
+};
+
 /// vkcppm info SCENE
 struct InfoOptions {
     SceneOptions scene;
@@ -66,13 +80,13 @@ struct TextOptions {
     std::string text;
 };
 
-using Options = std::variant<RenderOptions, CompareOptions, InfoOptions, DevicesOptions, TextOptions>;
+using Options = std::variant<RenderOptions, RaceOptions, CompareOptions, InfoOptions, DevicesOptions, TextOptions>;
 
 /// Iterations where --time is given and --iterations is not: the largest number that Settings takes.
 inline constexpr std::uint32_t unbounded_iterations = 0x7fffffff;
 
-/// Reads the command line; argv[0] is the program. The first word chooses the command where it is compare, info or
-/// devices, and is the scene otherwise. Throws Error(usage) with the option, its value and what it takes.
+/// Reads the command line; argv[0] is the program. The first word chooses the command where it is race, compare,
+/// info or devices, and is the scene otherwise. Throws Error(usage) with the option, its value and what it takes.
 Options parse_options(int argc, const char* const* argv);
 
 }  // namespace vkcppm

@@ -61,18 +61,26 @@ ProgressLine::~ProgressLine() {
 }
 
 void ProgressLine::update(const Progress& progress) {
+    update(progress.wall_seconds, progress_text(progress, time_limit_));
+}
+
+void ProgressLine::update(double wall_seconds, const std::string& text) {
     const double interval = terminal_ ? terminal_interval : plain_interval;
-    if (last_ && progress.wall_seconds - *last_ < interval) {
+    if (last_ && wall_seconds - *last_ < interval) {
         return;
     }
-    last_ = progress.wall_seconds;
-    write(progress_text(progress, time_limit_));
+    last_ = wall_seconds;
+    write(text);
     open_ = terminal_;
 }
 
 void ProgressLine::finish(const Progress& progress) {
-    write(fmt::format("{} iterations in {:.1f} s{}", progress.iterations_done, progress.wall_seconds,
-                      error_text(progress)));
+    finish_with(fmt::format("{} iterations in {:.1f} s{}", progress.iterations_done, progress.wall_seconds,
+                            error_text(progress)));
+}
+
+void ProgressLine::finish_with(const std::string& text) {
+    write(text);
     open_ = terminal_;
 }
 

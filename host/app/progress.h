@@ -27,8 +27,12 @@ public:
     /// The first call writes, a later one only where the interval has passed since the last line.
     void update(const Progress& progress);
 
+    /// The same for other commands than a render: `text` after so many seconds.
+    void update(double wall_seconds, const std::string& text);
+
     /// The last line: what was done in which time, and how near it came.
     void finish(const Progress& progress);
+    void finish_with(const std::string& text);
 
 private:
     void write(const std::string& text);

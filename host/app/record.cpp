@@ -13,12 +13,22 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Invalid UTF-8, which a file's names may hold, is replaced.
-std::string dump(const Json& json, int indent = -1) {
+const char* name_of(ThinGlass thin_glass) {
+    return thin_glass == ThinGlass::solid ? "solid" : "thin";
+}
+
+std::string hash_text(const Scene& scene) {
+    return fmt::format("{:016x}", scene.hash);
+}
+
+}  // namespace
+
+std::string version() { return VKCPPM_VERSION; }
+
+std::string json_text(const Json& json, int indent) {
     return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Names as the command line's options, with '_' for '-'.
 Json settings_json(const Settings& settings) {
     Json json;
     json["estimator"] = settings.estimator;
@@ -47,15 +57,13 @@ Json settings_json(const Settings& settings) {
     return json;
 }
 
-const char* name_of(ThinGlass thin_glass) {
-    return thin_glass == ThinGlass::solid ? "solid" : "thin";
+Json scene_json(const SceneOptions& options, const Scene& scene) {
+    return {{"file", scene.file.string()},
+            {"hash", hash_text(scene)},
+            {"triangles", scene.triangles.size()},
+            {"environment", options.environment ? Json(options.environment->string()) : Json()},
+            {"thin_glass", name_of(options.thin_glass)}};
 }
-
-std::string hash_text(const Scene& scene) {
-    return fmt::format("{:016x}", scene.hash);
-}
-
-}  // namespace
 
 ExrAttributes exr_attributes(const SceneOptions& options, const Scene& scene, const Rendering& rendering) {
     Json json = settings_json(rendering.settings);
@@ -69,10 +77,10 @@ ExrAttributes exr_attributes(const SceneOptions& options, const Scene& scene, co
     json["thin_glass"] = name_of(options.thin_glass);
     json["device"] = rendering.report.device;
     json["driver"] = rendering.report.driver;
-    json["version"] = VKCPPM_VERSION;
+    json["version"] = version();
     ExrAttributes attributes;
     for (const auto& [name, value] : json.items()) {
-        attributes.emplace_back("vkcppm." + name, value.is_string() ? value.get<std::string>() : dump(value));
+        attributes.emplace_back("vkcppm." + name, value.is_string() ? value.get<std::string>() : json_text(value));
     }
     return attributes;
 }
@@ -84,16 +92,11 @@ bool reached(const StopAt& stop_at, const Rendering& rendering) {
 
 std::string stats_json(const RenderOptions& options, const Scene& scene, const Rendering& rendering) {
     const Report& report = rendering.report;
-    const auto& environment = options.scene.environment;
     Json json;
-    json["version"] = VKCPPM_VERSION;
+    json["version"] = version();
     json["device"] = report.device;
     json["driver"] = report.driver;
-    json["scene"] = {{"file", scene.file.string()},
-                     {"hash", hash_text(scene)},
-                     {"triangles", scene.triangles.size()},
-                     {"environment", environment ? Json(environment->string()) : Json()},
-                     {"thin_glass", name_of(options.scene.thin_glass)}};
+    json["scene"] = scene_json(options.scene, scene);
     json["settings"] = settings_json(rendering.settings);
     json["totals"] = {{"iterations", report.iterations},
                       {"emitted_paths", report.emitted_paths},
@@ -118,7 +121,7 @@ std::string stats_json(const RenderOptions& options, const Scene& scene, const R
         }
         json["curve"] = curve_json(rendering.curve);
     }
-    return dump(json, 2) + "\n";
+    return json_text(json, 2) + "\n";
 }
 
 std::string stats_table(const Report& report) {

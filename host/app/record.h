@@ -3,12 +3,26 @@
 
 #include <string>
 
+#include <nlohmann/json.hpp>
+
 #include "app/options.h"
 #include "io/exr.h"
 #include "render/render.h"
 #include "scene/scene.h"
 
 namespace vkcppm {
+
+/// All settings, by the names of the command line's options with '_' for '-'.
+nlohmann::ordered_json settings_json(const Settings& settings);
+
+/// The scene's file and hash, its triangles, and what was done to it.
+nlohmann::ordered_json scene_json(const SceneOptions& options, const Scene& scene);
+
+/// JSON as text; invalid UTF-8, which a file's names may hold, is replaced. indent: -1 for a single line.
+std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
+
+/// The version of the program.
+std::string version();
 
 /// The EXR's attributes, named "vkcppm.*": all settings as resolved, the scene's name and hash and what was done to
 /// it, what was rendered, device, driver and version. Nothing that differs between two runs of one seed on one device.

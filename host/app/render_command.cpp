@@ -14,6 +14,7 @@
 #include "app/progress.h"
 #include "app/record.h"
 #include "app/reference.h"
+#include "app/validation.h"
 #include "core/error.h"
 #include "core/metrics.h"
 #include "io/atomic_file.h"
@@ -51,12 +52,6 @@ void check_outputs(const RenderOptions& options) {
     }
     if (options.stats) {
         check("--stats", *options.stats);
-    }
-}
-
-void print_warnings(const std::vector<std::string>& warnings) {
-    for (const std::string& warning : warnings) {
-        print_message("warning: " + warning);
     }
 }
 
@@ -138,16 +133,6 @@ void print_table(const Report& report) {
     }
 }
 
-void check_validation(const Device& device) {
-    const std::vector<std::string> messages = device.validation_messages();
-    for (const std::string& message : messages) {
-        print_message("validation: " + message);
-    }
-    if (!messages.empty()) {
-        throw Error(ExitCode::internal, fmt::format("{} messages of the validation layer", messages.size()));
-    }
-}
-
 }  // namespace
 
 void execute(const RenderOptions& options) {
@@ -159,9 +144,7 @@ void execute(const RenderOptions& options) {
     const Settings settings = resolve_settings(options.settings, scene);
     const std::optional<Measuring> measuring = read_measuring(options, *settings.size);
     Device device(options.device);
-    if (options.device.validate && !device.validating()) {
-        throw Error(ExitCode::no_device, "--validate: the Vulkan validation layer is not installed");
-    }
+    require_validation(options.device, device);
     const Rendering rendering = render_with_progress(scene, options, measuring ? &*measuring : nullptr, device);
     print_warnings(rendering.warnings);
     if (options.stop_at) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <glm/ext/vector_uint3_sized.hpp>
 #include <glm/vec3.hpp>
 
 namespace vkcppm {
@@ -22,6 +23,12 @@ struct Image {
     std::vector<glm::vec3> rgb;
     const glm::vec3& at(std::uint32_t x, std::uint32_t y) const { return rgb[std::size_t(y) * extent.width + x]; }
     bool operator==(const Image&) const = default;
+};
+
+/// rgb [height x width], 8-bit sRGB, row-major, first row on top: what a screen takes.
+struct Bitmap {
+    Extent extent;
+    std::vector<glm::u8vec3> rgb;
 };
 
 }  // namespace vkcppm

@@ -1,9 +1,7 @@
 #include "io/png.h"
 
+#include <cassert>
 #include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
 
 #include <png.h>
 
@@ -13,28 +11,37 @@
 
 namespace vkcppm {
 
-void write_png(const std::filesystem::path& file, const Image& image, double exposure) {
+Bitmap to_bitmap(const Image& image, double exposure) {
     const double scale = std::exp2(exposure);
-    std::vector<png_byte> encoded;  // [height x width x 3]
-    encoded.reserve(image.rgb.size() * 3);
+    Bitmap bitmap{image.extent, {}};
+    bitmap.rgb.reserve(image.rgb.size());
     for (const glm::vec3& pixel : image.rgb) {
-        for (int c = 0; c < 3; ++c) {
-            encoded.push_back(srgb_byte(scale * double(pixel[c])));
-        }
+        glm::u8vec3 encoded;
+        for (int c = 0; c < 3; ++c) encoded[c] = srgb_byte(scale * double(pixel[c]));
+        bitmap.rgb.push_back(encoded);
     }
+    return bitmap;
+}
 
+std::string encode_png(const Bitmap& bitmap) {
+    static_assert(sizeof(glm::u8vec3) == 3);
+    assert(bitmap.rgb.size() == bitmap.extent.pixels());
     png_image png{};
     png.version = PNG_IMAGE_VERSION;
-    png.width = image.extent.width;
-    png.height = image.extent.height;
+    png.width = bitmap.extent.width;
+    png.height = bitmap.extent.height;
     png.format = PNG_FORMAT_RGB;
     png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
     std::string bytes(size, '\0');
-    if (!png_image_write_to_memory(&png, bytes.data(), &size, false, encoded.data(), 0, nullptr)) {
-        throw Error(ExitCode::cannot_write, "cannot write " + file.string() + ": " + png.message);
+    if (!png_image_write_to_memory(&png, bytes.data(), &size, false, bitmap.rgb.data(), 0, nullptr)) {
+        throw Error(ExitCode::internal, std::string("cannot encode a PNG picture: ") + png.message);
     }
     bytes.resize(size);
-    write_file(file, bytes);
+    return bytes;
+}
+
+void write_png(const std::filesystem::path& file, const Image& image, double exposure) {
+    write_file(file, encode_png(to_bitmap(image, exposure)));
 }
 
 }  // namespace vkcppm

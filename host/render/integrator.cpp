@@ -272,6 +272,14 @@ Image Integrator::resolve() {
     return image;
 }
 
+std::vector<float> Integrator::radii() const {
+    std::vector<float> radii;
+    for (const gpu::PixelState& state : buffers_.at(BIND_PIXELS).download<gpu::PixelState>(pixels_)) {
+        radii.push_back(float(std::sqrt(double(state.radius2)) / scale_));
+    }
+    return radii;
+}
+
 std::map<std::string, std::vector<float>> Integrator::aovs() const {
     const auto states = buffers_.at(BIND_PIXELS).download<gpu::PixelState>(pixels_);
     const auto sums = buffers_.at(BIND_AOVS).download<gpu::Aovs>(pixels_);
@@ -282,7 +290,7 @@ std::map<std::string, std::vector<float>> Integrator::aovs() const {
     };
     using State = const gpu::PixelState&;
     using Sums = const gpu::Aovs&;
-    add("ppm.radius", [&](State s, Sums) { return std::sqrt(double(s.radius2)) / scale_; });
+    channels["ppm.radius"] = radii();
     add("ppm.photons", [](State s, Sums) { return s.photons; });
     add("ppm.batch", [](State s, Sums) { return s.batch; });
     add("ppm.rejections", [](State s, Sums) { return s.rejections; });

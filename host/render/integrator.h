@@ -37,6 +37,9 @@ public:
     /// The channels of Rendering::aovs. Asserts that the settings asked for them.
     std::map<std::string, std::vector<float>> aovs() const;
 
+    /// [P] m: the radius of every pixel's disc now; 0 where none of its eye paths has gathered yet.
+    std::vector<float> radii() const;
+
     /// Totals so far: passes, iterations, paths, photons, rays, device memory.
     void fill(Report& report) const;
 
