@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include "app/commands.h"
@@ -73,12 +74,12 @@ std::string race_text(const RaceProgress& progress) {
         fmt::format_to(out, ", {} left", duration_text(left));
     }
     const Metric& metric = metrics().front();
-    std::string before = fmt::format("; {}", metric.title);
+    std::vector<std::string> errors;
     for (const RaceRun& run : progress.runs) {
         if (run.curves.empty() || run.curves.back().empty()) continue;
-        fmt::format_to(out, "{} {} {:.3g}", before, run.entrant.name, metric.of(run.curves.back().back().error));
-        before = ",";
+        errors.push_back(fmt::format("{} {:.3g}", run.entrant.name, metric.of(run.curves.back().back().error)));
     }
+    fmt::format_to(out, "; {} {}", metric.title, fmt::join(errors, ", "));
     return text;
 }
 

@@ -51,7 +51,7 @@ const signed = (value) => value.toFixed(2).replace('-', '−');
 /** "1.23" with its interval behind it, if there is one. */
 function estimate(value, text = number) {
   if (!value) return ['–'];
-  if (value.low === null) return [text(value.mean)];
+  if (value.low === null || value.low === value.high) return [text(value.mean)];
   return [text(value.mean), ' ', make('small', {title: `${percent} % confidence interval`},
                                       `${text(value.low)}–${text(value.high)}`)];
 }
@@ -124,7 +124,7 @@ const named = (entrant) => [key(entrant), make('span', {class: 'name'}, entrant.
 
 function drawHead() {
   const file = race.scene.file.split('/').pop();
-  at('heading').textContent = `${file}: ${entrants.map((entrant) => entrant.name).join(', ')}`;
+  at('heading').textContent = `Race: ${file}`;
   const limits = [race.seconds === null ? null : `${number(race.seconds)} s`,
                   race.iterations === null ? null : plural(race.iterations, 'iteration')].filter(Boolean);
   const settings = entrants[0].settings;
@@ -161,8 +161,7 @@ function drawVerdict(metric) {
   const times = (speedup) => [
     make('strong', {}, `${number(speedup.mean)} times`),
     speedup.low === null ? '' : ` (${percent} %: ${number(speedup.low)} to ${number(speedup.high)})`];
-  verdict.append(` The error that ${baseline.name} has at its end it reaches `, ...times(own.equal_seconds.speedup),
-                 ' sooner');
+  verdict.append(` It reaches the error that ${baseline.name} has at its end `, ...times(own.equal_seconds.speedup), ' sooner');
   if (own.equal_iterations.speedup) verdict.append(', with ', ...times(own.equal_iterations.speedup), ' fewer iterations');
   verdict.append('.');
   const {low, high} = own.equal_seconds.speedup;
@@ -440,7 +439,7 @@ function buildTiles() {
       make('span', {class: 'meter'}, make('i', {style: `width:${(100 * part).toFixed(2)}%;background:${colour}`})));
     const legend = make('ul', {class: 'legend'}, ...entrants.map((entrant) => line(named(entrant), entrant[share], entrant.colour)),
       rest > 5e-4 ? line([make('span', {class: 'name'}, 'a draw (light gray)')], rest, '#c8c8c8') : null);
-    own.crop.before(legend);
+    own.crop.replaceWith(legend);
     tiles.push({...own, source: () => pictures[name]});
     at('winners').append(own.figure);
   }
@@ -458,6 +457,12 @@ function buildTiles() {
   });
 }
 
+/** So many pictures side by side that none is too small and the last row is not left with few. */
+function columns() {
+  const count = entrants.length + 1, most = Math.max(2, Math.floor(at('tiles').clientWidth / 190));
+  return Math.ceil(count / Math.ceil(count / most));
+}
+
 function drawTiles(metric) {
   const crop = state.crop;
   crop.x = Math.round(Math.max(0, Math.min(race.width - crop.size, crop.x)));
@@ -470,8 +475,12 @@ function drawTiles(metric) {
     box.style.aspectRatio = '1';
     Object.assign(magnified.style, {width: part(race.width, crop.size), height: part(race.height, crop.size),
                                     left: part(-crop.x, crop.size), top: part(-crop.y, crop.size)});
-    if (entrant) told.textContent = `${metric.title} ${number(entrant.metrics[metric.name].final?.mean ?? null)}`;
+    if (entrant) {
+      told.textContent = number(entrant.metrics[metric.name].final?.mean ?? null);
+      told.title = `${metric.title} at its end`;
+    }
   }
+  at('tiles').style.setProperty('--columns', columns());
   at('crop-size').value = crop.size;
   at('crop-place').textContent = `from column ${crop.x}, row ${crop.y}`;
   for (const button of at('views').children) button.setAttribute('aria-pressed', button.dataset.view === state.view);
@@ -515,7 +524,7 @@ function drawNotes() {
     ? 'There is one seed, so nothing tells how much of a difference is chance: --seeds 3 adds confidence bands.'
     : `Curves are geometric means over ${seeds} seeds; bands and ranges are ${percent} % confidence intervals by Student’s t on the logarithms.`;
   at('curves-note').textContent = `Both axes are logarithmic. ${spread} A slope is the least squares fit over the last factor of ten; ` +
-    '−1 is what noise alone gives to a squared error, −2/3 the best that progressive photon mapping can promise.';
+    'of a squared error −1 is that of noise alone, −2/3 the best asymptotic rate of progressive photon mapping (Kaplanyan and Dachsbacher 2013).';
   at('equal-note').textContent = `Where each curve, interpolated log-log, first comes down to the error that ${baseline.name} ` +
     `has at its end, seed by seed; “sooner” and “fewer” are ${baseline.name}’s own over that.`;
   at('pictures-note').textContent = `Pictures and maps are those of seed ${race.seeds[0]} at its end. The difference is the ` +
@@ -553,5 +562,5 @@ let lastWidth = innerWidth;
 addEventListener('resize', () => {
   if (innerWidth === lastWidth) return;
   lastWidth = innerWidth;
-  drawPlots(chosenMetric());
+  draw();
 });

@@ -7,6 +7,7 @@
 namespace vkcppm {
 namespace {
 
+constexpr double rounding = 1e-12;      // of a geometric mean
 constexpr double fitted_factor = 10.0;  // of x, up to its end: the first iterations do not follow a power law
 
 /// A curve of one metric against one axis. x, y [points]
@@ -40,7 +41,7 @@ std::optional<double> interpolate(const Line& line, double x) {
     return line.y[i - 1] * std::pow(line.y[i] / line.y[i - 1], part);
 }
 
-/// x at the iterations at which every seed has a snapshot: the geometric mean over the seeds.
+/// x at the iterations at which every seed has a snapshot, the geometric mean over the seeds, and the first end of one.
 std::vector<double> common_positions(Seeds seeds, Axis axis) {
     std::vector<double> positions;
     for (const CurvePoint& point : seeds.front()) {
@@ -54,6 +55,15 @@ std::vector<double> common_positions(Seeds seeds, Axis axis) {
             positions.push_back(axis == Axis::iterations ? of_seeds.front() : geometric_mean(of_seeds).mean);
         }
     }
+    double begin = 0.0, end = INFINITY;  // where all curves reach
+    for (const Curve& curve : seeds) {
+        begin = std::max(begin, position(curve.front(), axis));
+        end = std::min(end, position(curve.back(), axis));
+    }
+    if (!(begin > 0.0 && begin <= end)) return {};
+    for (double& x : positions) x = std::clamp(x, begin, end);
+    if (positions.empty() || end > (1.0 + rounding) * positions.back()) positions.push_back(end);
+    positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
     return positions;
 }
 

@@ -26,7 +26,8 @@ struct Band {
 };
 
 /// Against iterations: at those where every seed has a snapshot. Against seconds: at the geometric mean of the seeds'
-/// times of these, where all curves reach, every curve interpolated log-log.
+/// times of these, moved to where all curves reach. Both: also where the first curve ends. Between snapshots every
+/// curve is interpolated log-log.
 Band band(Seeds seeds, const Metric& metric, Axis axis);
 
 /// How soon an estimator comes down to the error that a baseline has at its end, seed by seed.

@@ -134,12 +134,71 @@ TEST(Options, HelpNamesEveryOptionAndEstimator) {
          {"SCENE", "-o", "--estimator", "--iterations", "--time", "--photons", "--size", "--camera", "--seed",
           "--max-depth", "--knn", "--alpha", "--k ", "--beta", "--significance", "--device", "--stats", "--quiet",
           "--verbose", "--png", "--exposure", "--rings", "--sectors", "--validate", "--version", "cppm", "sppm:",
-          "sppm-kz", "compare", "info", "devices", "73", "--environment", "--thin-glass", "--aperture",
+          "sppm-kz", "race", "compare", "info", "devices", "73", "--environment", "--thin-glass", "--aperture",
           "--focus-distance", "--reference", "--stop-at", "smape_trimmed", "clock"}) {
         EXPECT_NE(help.find(name), std::string::npos) << name << " is not in\n" << help;
     }
     EXPECT_NE(std::get<TextOptions>(parse({"compare", "--help"})).text.find("REFERENCE"), std::string::npos);
     EXPECT_EQ(std::get<TextOptions>(parse({"--version"})).text.substr(0, 7), "vkcppm ");
+}
+
+RaceOptions parse_race(std::vector<std::string> words) {
+    words.insert(words.begin(), {"race", "s.gltf", "-o", "out"});
+    return std::get<RaceOptions>(parse(words));
+}
+
+TEST(Options, ARaceIsOfThreeForAMinute) {
+    const RaceOptions options = parse_race({});
+    EXPECT_EQ(options.scene.file, "s.gltf");
+    EXPECT_EQ(options.folder, "out");
+    EXPECT_EQ(options.race.seeds, 1u);
+    EXPECT_FALSE(options.reference);
+    ASSERT_EQ(options.race.entrants.size(), 3u);
+    EXPECT_EQ(options.race.entrants[0].name, "cppm");
+    EXPECT_EQ(options.race.entrants[1].settings.estimator, "sppm");
+    for (const Entrant& entrant : options.race.entrants) {
+        EXPECT_EQ(entrant.settings.seconds, 60.0);
+        EXPECT_EQ(entrant.settings.iterations, unbounded_iterations);
+        EXPECT_EQ(entrant.settings.photons, 65536u);
+    }
+}
+
+TEST(Options, EntrantsHaveParametersOfTheirOwn) {
+    const RaceOptions options =
+        parse_race({"--estimators", "cppm:beta=1.5:k=0.7,sppm:alpha=0.5,ftest:rings=3:sectors=8:significance=1e-2:knn=20,cppm",
+                    "--k", "0.6", "--photons", "77", "--iterations", "9", "--seeds", "4", "--seed", "5", "--size", "8x4",
+                    "--reference", "r.exr", "--exposure", "2", "--device", "0", "--quiet"});
+    const std::vector<Entrant>& entrants = options.race.entrants;
+    ASSERT_EQ(entrants.size(), 4u);
+    EXPECT_EQ(entrants[0].name, "cppm:beta=1.5:k=0.7");
+    EXPECT_EQ(entrants[0].settings.estimator, "cppm");
+    EXPECT_EQ(entrants[0].settings.beta, 1.5);
+    EXPECT_EQ(entrants[0].settings.k, 0.7);
+    EXPECT_EQ(entrants[1].settings.estimator, "sppm");
+    EXPECT_EQ(entrants[1].settings.alpha, 0.5);
+    EXPECT_EQ(entrants[1].settings.k, 0.6) << "of the command line where it has none of its own";
+    EXPECT_EQ(entrants[2].settings.rings, 3u);
+    EXPECT_EQ(entrants[2].settings.sectors, 8u);
+    EXPECT_EQ(entrants[2].settings.significance, 0.01);
+    EXPECT_EQ(entrants[2].settings.knn, 20u);
+    EXPECT_EQ(entrants[3].settings.beta, 1.2);
+    for (const Entrant& entrant : entrants) {
+        EXPECT_EQ(entrant.settings.photons, 77u);
+        EXPECT_EQ(entrant.settings.iterations, 9u);
+        EXPECT_FALSE(entrant.settings.seconds);
+        EXPECT_EQ(entrant.settings.seed, 5u);
+        EXPECT_EQ(entrant.settings.size, (Extent{8, 4}));
+    }
+    EXPECT_EQ(options.race.seeds, 4u);
+    EXPECT_EQ(options.reference, "r.exr");
+    EXPECT_EQ(options.exposure, 2.0);
+    EXPECT_EQ(options.device.select, "0");
+    EXPECT_TRUE(options.quiet);
+}
+
+TEST(Options, ARaceRemembersItsCommandForAShell) {
+    EXPECT_EQ(parse_race({"--camera", "it's top", "--size", "8x4", "--estimators", "cppm:k=0.5"}).command,
+              "vkcppm race s.gltf -o out --camera 'it'\\''s top' --size 8x4 --estimators cppm:k=0.5");
 }
 
 struct BadLine {
@@ -151,6 +210,15 @@ TEST(Options, RefuseEveryBadLineWithOptionValueAndRange) {
     const std::vector<BadLine> lines = {
         {{}, {"SCENE"}},
         {{"s", "t"}, {"t"}},
+        {{"race", "s"}, {"-o"}},
+        {{"race", "s", "-o", "d", "--seeds", "0"}, {"--seeds", "0"}},
+        {{"race", "s", "-o", "d", "--estimators", "cppm,nonsense"}, {"nonsense", "cppm-lf"}},
+        {{"race", "s", "-o", "d", "--estimators", "cppm,"  ",sppm"}, {"none of", "cppm"}},
+        {{"race", "s", "-o", "d", "--estimators", "cppm:gamma=1"}, {"--estimators", "cppm:gamma=1", "beta", "gamma"}},
+        {{"race", "s", "-o", "d", "--estimators", "cppm:photons=1"}, {"--estimators", "photons", "knn, alpha"}},
+        {{"race", "s", "-o", "d", "--estimators", "cppm:beta"}, {"--estimators", "cppm:beta", "PARAMETER=VALUE"}},
+        {{"race", "s", "-o", "d", "--estimators", "cppm:beta=x"}, {"--beta", "'x'", "finite"}},
+        {{"race", "s", "-o", "d", "--estimator", "cppm"}, {"--estimator"}},
         {{"s", "--bogus"}, {"--bogus"}},
         {{"s", "--bogus=1"}, {"--bogus"}},
         {{"s", "-x"}, {"-x"}},

@@ -1,0 +1,182 @@
+// vkcppm race as a user meets it.
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "io/exr.h"
+#include "support/files.h"
+#include "support/process.h"
+#include "support/temporary_folder.h"
+
+namespace vkcppm {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using Words = std::vector<std::string>;
+
+std::string scene(const std::string& name) {
+    return (fs::path(VKCPPM_SOURCE_DIR) / "scenes" / (name + ".gltf")).string();
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+class RaceCli : public testing::Test {
+protected:
+    test::ProcessResult run(Words words) const {
+        words.insert(words.begin(), VKCPPM_PROGRAM);
+        return test::run_process(words, folder_.path());
+    }
+
+    /// A race that takes a moment, into `out`.
+    test::ProcessResult race(const std::string& out, Words more) const {
+        Words words{"race", scene("torus"), "-o", out, "--photons", "1000", "--iterations", "5", "--quiet"};
+        words.insert(words.end(), more.begin(), more.end());
+        return run(words);
+    }
+
+    /// ref.exr of 32x24 pixels, of the torus.
+    void make_reference() const {
+        const auto result = run({scene("torus"), "-o", "ref.exr", "--size", "32x24", "--photons", "4000", "--iterations", "9",
+                                 "--seed", "77", "--quiet"});
+        ASSERT_EQ(result.exit_code, 0) << result.err;
+    }
+
+    /// The lines of a curves.csv without their seconds.
+    std::vector<std::string> curves(const std::string& file) const {
+        std::vector<std::string> lines;
+        std::istringstream stream(test::read_bytes(folder_ / file));
+        for (std::string line; std::getline(stream, line);) {
+            std::vector<std::string> cells;
+            std::istringstream of_line(line);
+            for (std::string cell; std::getline(of_line, cell, ',');) cells.push_back(cell);
+            std::string kept;
+            for (std::size_t i = 0; i < cells.size(); ++i) kept += i == 3 ? "" : cells[i] + ",";
+            lines.push_back(kept);
+        }
+        return lines;
+    }
+
+    Json json(const std::string& file) const { return Json::parse(test::read_bytes(folder_ / file)); }
+
+    test::TemporaryFolder folder_;
+};
+
+/// Exit code `code` and one line of error with all of `told`.
+void expect_failure(const test::ProcessResult& result, int code, const Words& told) {
+    EXPECT_EQ(result.exit_code, code) << result.err;
+    EXPECT_EQ(result.out, "");
+    const std::size_t at = result.err.find("error: ");
+    ASSERT_NE(at, std::string::npos) << result.err;
+    for (const std::string& part : told) EXPECT_TRUE(contains(result.err.substr(at), part)) << part << "\n" << result.err;
+}
+
+TEST_F(RaceCli, TwiceGivesTheSameCurvesAndPictures) {
+    make_reference();
+    const Words words{"--reference", "ref.exr", "--estimators", "cppm,sppm:alpha=0.5", "--seeds", "2"};
+    for (const char* out : {"a", "b/c"}) {
+        const auto result = race(out, words);
+        ASSERT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_EQ(result.out + result.err, "");
+    }
+    const std::vector<std::string> first = curves("a/curves.csv");
+    EXPECT_EQ(first.size(), 1u + 2 * 2 * 4) << "after 1, 2, 4 and 5 iterations, two entrants, two seeds";
+    EXPECT_EQ(curves("b/c/curves.csv"), first);
+    EXPECT_EQ(test::names_in(folder_ / "a"),
+              (std::set<std::string>{"cppm-difference.png", "cppm-radius.png", "cppm.exr", "cppm.png", "curves.csv",
+                                     "index.html", "race.json", "reference.exr", "reference.png",
+                                     "sppm-alpha-0.5-difference.png", "sppm-alpha-0.5-radius.png", "sppm-alpha-0.5.exr",
+                                     "sppm-alpha-0.5.png", "winner-around.png", "winner.png"}));
+    for (const std::string& name : test::names_in(folder_ / "a")) {
+        if (!name.ends_with(".exr") && !name.ends_with(".png")) continue;
+        EXPECT_EQ(test::read_bytes(folder_ / "a" / name), test::read_bytes(folder_ / "b" / "c" / name)) << name;
+    }
+    const Json told = json("a/race.json");
+    EXPECT_EQ(told["width"], 32);
+    EXPECT_EQ(told["baseline"], "sppm:alpha=0.5");
+    EXPECT_EQ(told["seeds"], Json({1, 2}));
+    EXPECT_EQ(told["entrants"][1]["settings"]["alpha"], 0.5);
+    EXPECT_EQ(told["interrupted"], false);
+    EXPECT_TRUE(contains(told["command"], "vkcppm race ")) << told["command"];
+}
+
+TEST_F(RaceCli, ThePictureIsThatOfARenderAndTheErrorThatOfCompare) {
+    make_reference();
+    ASSERT_EQ(race("out", {"--reference", "ref.exr", "--estimators", "appm,cppm"}).exit_code, 0);
+    ASSERT_EQ(run({scene("torus"), "-o", "alone.exr", "--size", "32x24", "--photons", "1000", "--iterations", "5",
+                   "--estimator", "appm", "--quiet"}).exit_code, 0);
+    EXPECT_EQ(read_exr(folder_ / "alone.exr"), read_exr(folder_ / "out/appm.exr"));
+    const ExrAttributes alone = read_exr_attributes(folder_ / "alone.exr");
+    EXPECT_EQ(read_exr_attributes(folder_ / "out/appm.exr"), alone) << "the same settings make it again";
+    EXPECT_EQ(read_exr(folder_ / "out/reference.exr"), read_exr(folder_ / "ref.exr"));
+    const Json told = json("out/race.json")["entrants"][0]["runs"][0]["curve"].back();
+    const auto compared = run({"compare", "alone.exr", "ref.exr", "--json"});
+    for (const char* metric : {"mse", "relmse_trimmed", "srgb_mse"}) {
+        EXPECT_EQ(told[metric], Json::parse(compared.out)[metric]) << metric;
+    }
+}
+
+TEST_F(RaceCli, AReferenceBesideTheSceneIsFoundAndTellsTheSize) {
+    make_reference();
+    fs::copy_file(scene("torus"), folder_ / "mine.gltf");
+    const Words words{"race", "mine.gltf", "-o", "out", "--photons", "500", "--iterations", "2", "--quiet"};
+    expect_failure(run(words), 2, {"references/mine.exr", "mine.gltf", "--reference"});
+    EXPECT_FALSE(fs::exists(folder_ / "out")) << "nothing is made of a wrong command";
+    fs::create_directory(folder_ / "references");
+    fs::rename(folder_ / "ref.exr", folder_ / "references/mine.exr");
+    const auto result = run(words);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(read_exr(folder_ / "out/cppm.exr").extent, (Extent{32, 24}));
+    EXPECT_EQ(json("out/race.json")["entrants"].size(), 3u);
+}
+
+TEST_F(RaceCli, RefusesReferencesThatDoNotFit) {
+    make_reference();
+    expect_failure(race("out", {"--reference", "none.exr"}), 66, {"none.exr"});
+    expect_failure(race("out", {"--reference", "ref.exr", "--size", "32x23"}), 2, {"ref.exr", "32x24", "32x23"});
+    expect_failure(race("out", {"--reference", scene("torus")}), 65, {"torus.gltf"});
+    expect_failure(race("out", {"--reference", "ref.exr", "--estimators", "cppm,sppm:alpha=1"}), 2, {"--alpha 1", "sppm:alpha=1"});
+    expect_failure(race("out", {"--reference", "ref.exr", "--estimators", "cppm,cppm"}), 2, {"cppm", "twice"});
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+    test::write_bytes(folder_ / "file", "");
+    expect_failure(race("file/out", {"--reference", "ref.exr"}), 73, {"file/out"});
+}
+
+TEST_F(RaceCli, WarnsOfAReferenceThatShowsSomethingElse) {
+    make_reference();
+    const auto same = race("out", {"--reference", "ref.exr"});
+    EXPECT_EQ(same.err, "");
+    const auto lens = race("out", {"--reference", "ref.exr", "--aperture", "0.1", "--focus-distance", "3"});
+    EXPECT_EQ(lens.exit_code, 0);
+    EXPECT_TRUE(contains(lens.err, "warning: ref.exr has aperture 0.0, the race 0.1")) << lens.err;
+    const auto other = run({"race", scene("caustic"), "-o", "out", "--photons", "500", "--iterations", "1", "--reference",
+                            "ref.exr", "--quiet"});
+    EXPECT_TRUE(contains(other.err, "warning: ref.exr has scene_hash")) << other.err;
+}
+
+TEST_F(RaceCli, EndsEarlyAndWritesWhatThereIs) {
+    make_reference();
+    test::Process process({VKCPPM_PROGRAM, "race", scene("torus"), "-o", "out", "--reference", "ref.exr", "--photons", "1000",
+                           "--time", "1h", "--seeds", "3"},
+                          folder_.path());
+    ASSERT_TRUE(process.wait_for_message(" left; MSE cppm "));
+    process.send(SIGINT);
+    const auto result = process.wait();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(contains(result.err, "interrupted: wrote what there is to out/index.html")) << result.err;
+    const Json told = json("out/race.json");
+    EXPECT_EQ(told["interrupted"], true);
+    EXPECT_EQ(told["seeds"], Json({1}));
+    for (const Json& entrant : told["entrants"]) EXPECT_GE(entrant["runs"][0]["iterations"], 1) << entrant["name"];
+}
+
+}  // namespace
+}  // namespace vkcppm

@@ -1,0 +1,193 @@
+// The page of a race in a browser: Chromium without a window, where there is one.
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "app/race_page.h"
+#include "app/race_pictures.h"
+#include "app/race_record.h"
+#include "support/files.h"
+#include "support/process.h"
+#include "support/race_result.h"
+#include "support/temporary_folder.h"
+
+namespace vkcppm {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// The browser among the folders of PATH.
+std::optional<std::string> chromium() {
+    std::istringstream folders(std::getenv("PATH") ? std::getenv("PATH") : "");
+    for (std::string folder; std::getline(folders, folder, ':');) {
+        for (const char* name : {"chromium", "chromium-browser", "google-chrome"}) {
+            if (fs::exists(fs::path(folder) / name)) return (fs::path(folder) / name).string();
+        }
+    }
+    return std::nullopt;
+}
+
+/// Every part of `text` that the first group of `pattern` takes.
+std::vector<std::string> all(const std::string& text, const std::string& pattern) {
+    const std::regex regex(pattern);
+    std::vector<std::string> found;
+    for (std::sregex_iterator it(text.begin(), text.end(), regex), end; it != end; ++it) found.push_back((*it)[1]);
+    return found;
+}
+
+/// What stands between `begin` and the next `end`.
+std::string between(const std::string& text, const std::string& begin, const std::string& end) {
+    const std::size_t at = text.find(begin);
+    if (at == std::string::npos) {
+        ADD_FAILURE() << "'" << begin << "' is not on the page";
+        return "";
+    }
+    return text.substr(at + begin.size(), text.find(end, at + begin.size()) - at - begin.size());
+}
+
+std::string without_tags(const std::string& html) { return std::regex_replace(html, std::regex("<[^>]*>"), " "); }
+
+class RaceInBrowser : public testing::Test {
+protected:
+    void SetUp() override {
+        browser_ = chromium();
+        if (!browser_) GTEST_SKIP() << "no chromium in PATH";
+    }
+
+    /// Writes the page of a made-up race.
+    void write(const std::vector<std::string>& names) {
+        RaceOptions options;
+        options.command = "vkcppm race \"scene\" <&> -o out";
+        Scene scene;
+        scene.file = "a </script> & b.gltf";
+        const RaceResult result = test::made_up_race(names);
+        const RacePictures pictures = race_pictures(result, {{8, 6}, std::vector<glm::vec3>(48, glm::vec3(0.5f))}, 0.0);
+        json_ = race_json(options, {scene, "a.exr"}, result, pictures);
+        test::write_bytes(folder_ / "index.html", race_page(json_, pictures));
+    }
+
+    /// The page after its script ran, with what follows # in its address; without the data that it was drawn from.
+    std::string drawn(const std::string& hash) {
+        const test::ProcessResult result = test::run_process(
+            {*browser_, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--window-size=1280,900",
+             "--user-data-dir=" + (folder_ / "profile").string(), "--virtual-time-budget=5000", "--dump-dom",
+             "file://" + (folder_ / "index.html").string() + hash},
+            folder_.path());
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        const std::size_t data = result.out.find("<script type=\"application/json\"");
+        EXPECT_NE(data, std::string::npos) << result.err;
+        const std::string page = result.out.substr(0, data);
+        const std::string alert = between(page, "<div id=\"alert\"", "</div>");
+        EXPECT_NE(alert.find("hidden"), std::string::npos) << alert;
+        return page;
+    }
+
+    test::TemporaryFolder folder_;
+    Json json_;
+    std::optional<std::string> browser_;
+};
+
+void expect_plots(const std::string& page, const std::string& metric, std::size_t curves, std::size_t points) {
+    for (const char* axis : {"iterations", "seconds"}) {
+        const std::string plot = between(page, std::string("id=\"plot-") + axis + "\"", "</figure>");
+        EXPECT_EQ(all(plot, "data-metric=\"([a-z_]+)\""), std::vector<std::string>{metric}) << axis;
+        const std::vector<std::string> lines = all(plot, "<path class=\"line\"[^>]* d=\"([^\"]*)\"");
+        ASSERT_EQ(lines.size(), curves) << axis;
+        for (const std::string& line : lines) {
+            EXPECT_TRUE(std::regex_match(line, std::regex(R"(M-?\d+\.\d,-?\d+\.\d(L-?\d+\.\d,-?\d+\.\d)*)"))) << line;
+            EXPECT_EQ(all(line, R"((-?\d+\.\d),)").size(), points) << line;
+        }
+        EXPECT_EQ(plot.find("NaN"), std::string::npos) << axis;
+        EXPECT_EQ(plot.find("Infinity"), std::string::npos) << axis;
+        EXPECT_EQ(all(plot, "class=\"slope\"[^>]*>(slope [^<]*)<").size(), curves) << axis;
+    }
+}
+
+TEST_F(RaceInBrowser, DrawsTenEntrants) {
+    const std::vector<std::string> names = {"cppm", "sppm", "appm", "cppm-lf", "cppm-gof", "cppm-fold", "cppm-null",
+                                            "ftest", "ftest-fold", "cppm:beta=1.5"};
+    write(names);
+    const std::string page = drawn("");
+    expect_plots(page, "mse", 10, 7);
+    EXPECT_NE(between(page, "<h1 id=\"heading\">", "</h1>").find("Race: script&gt; &amp; b.gltf"), std::string::npos);
+    EXPECT_EQ(between(page, "<pre id=\"command\" tabindex=\"0\">", "</pre>"), "vkcppm race \"scene\" &lt;&amp;&gt; -o out");
+    for (const std::string& name : names) {
+        EXPECT_NE(between(page, "<table id=\"equal\">", "</table>").find(">" + name + "<"), std::string::npos) << name;
+        EXPECT_NE(between(page, "<table id=\"cost\">", "</table>").find(">" + name + "<"), std::string::npos) << name;
+        EXPECT_NE(page.find("class=\"tile\" data-name=\"" + name + "\""), std::string::npos) << name;
+    }
+    // Ten marks that differ.
+    std::vector<std::string> marks = all(between(page, "id=\"chips\"", "</div>"), "<path d=\"([^\"]*)\"");
+    std::sort(marks.begin(), marks.end());
+    EXPECT_EQ(marks.size(), 10u);
+    EXPECT_TRUE(std::adjacent_find(marks.begin(), marks.end()) == marks.end());
+}
+
+TEST_F(RaceInBrowser, NumbersAreThoseOfTheRecord) {
+    write({"sppm", "cppm", "appm"});
+    const std::string table = between(drawn("#metric=relmse"), "<table id=\"equal\">", "</table>");
+    for (const Json& entrant : json_["entrants"]) {
+        const std::string name = entrant["name"];
+        const std::string row = without_tags(between(table, "<tr data-name=\"" + name + "\">", "</tr>"));
+        std::istringstream words(row.substr(row.find(name) + name.size()));
+        std::string word;
+        words >> word;
+        if (word == "baseline") words >> word;
+        const double mean = entrant["metrics"]["relmse"]["final"]["mean"];
+        EXPECT_NEAR(std::stod(word), mean, 0.005 * mean) << row;
+        words >> word;  // low–high, of 3 digits
+        EXPECT_NEAR(std::stod(word), entrant["metrics"]["relmse"]["final"]["low"].get<double>(), 0.005 * mean) << row;
+        int iterations = 0;
+        double seconds = 0.0, milliseconds = 0.0;
+        words >> iterations >> seconds >> milliseconds;
+        EXPECT_EQ(iterations, 64) << row;
+        const double own = entrant["runs"][0]["seconds"];
+        EXPECT_NEAR(seconds, own, 0.005 * own) << row;
+        EXPECT_NEAR(milliseconds, 1000.0 * own / 64.0, 0.1) << row;
+        EXPECT_EQ(row.find("not reached") != std::string::npos, name != "sppm") << row;
+    }
+}
+
+TEST_F(RaceInBrowser, TheAddressChoosesMetricViewCropAndCurves) {
+    write({"sppm", "cppm", "appm"});
+    const std::string page = drawn("#metric=smape_trimmed&view=radius&crop=5,-3,4&hide=cppm");
+    expect_plots(page, "smape_trimmed", 2, 7);
+    EXPECT_NE(between(page, "data-view=\"radius\"", ">").find("aria-pressed=\"true\""), std::string::npos);
+    EXPECT_NE(between(page, "data-view=\"picture\"", ">").find("aria-pressed=\"false\""), std::string::npos);
+    // The only size of a crop that such a small picture has is 6; 5 columns to the right it would stand out.
+    EXPECT_EQ(between(page, "<span id=\"crop-place\" class=\"quiet\">", "</span>"), "from column 2, row 0");
+    const std::string tile = between(page, "class=\"tile\" data-name=\"appm\"", "</figure>");
+    EXPECT_NE(between(tile, "class=\"frame\"", ">").find("left: 25%"), std::string::npos) << "2 of 8 columns";
+    const std::vector<std::string> shown = all(tile, "src=\"([^\"]*)\"");
+    ASSERT_EQ(shown.size(), 2u) << "the picture and its crop";
+    EXPECT_EQ(shown[0], shown[1]);
+    const std::string whole = test::read_bytes(folder_ / "index.html");
+    const Json pictures = Json::parse(between(whole, "id=\"pictures\">", "</script>"));
+    EXPECT_EQ(shown[0], pictures["entrants"][2]["radius"].get<std::string>());
+}
+
+TEST_F(RaceInBrowser, TellsWhereItFails) {
+    write({"sppm", "cppm"});
+    std::string page = test::read_bytes(folder_ / "index.html");
+    page.replace(page.find("drawHead();\n"), 10, "undrawable");
+    test::write_bytes(folder_ / "index.html", page);
+    const test::ProcessResult result = test::run_process(
+        {*browser_, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+         "--user-data-dir=" + (folder_ / "profile").string(), "--virtual-time-budget=5000", "--dump-dom",
+         "file://" + (folder_ / "index.html").string()},
+        folder_.path());
+    EXPECT_NE(between(result.out, "<div id=\"alert\"", "</div>").find("This page failed: "), std::string::npos);
+}
+
+}  // namespace
+}  // namespace vkcppm
