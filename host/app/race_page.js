@@ -46,14 +46,20 @@ function number(value) {
   return size >= 100 ? Math.round(value).toLocaleString('en') : String(Number(value.toPrecision(3)));
 }
 
+/** The same with all three digits, for columns. */
+function digits(value) {
+  const text = number(value);
+  return Number.isFinite(value) && value !== 0 && /^[0-9.]+$/.test(text) && Math.abs(value) < 100 ? value.toPrecision(3) : text;
+}
+
 const signed = (value) => value.toFixed(2).replace('-', '−');
 
 /** "1.23" with its interval behind it, if there is one. */
-function estimate(value, text = number) {
+function estimate(value, text = digits, unit = '') {
   if (!value) return ['–'];
-  if (value.low === null || value.low === value.high) return [text(value.mean)];
-  return [text(value.mean), ' ', make('small', {title: `${percent} % confidence interval`},
-                                      `${text(value.low)}–${text(value.high)}`)];
+  if (value.low === null || value.low === value.high) return [text(value.mean) + unit];
+  return [text(value.mean) + unit, ' ', make('small', {title: `${percent} % confidence interval`},
+                                             `${text(value.low)}–${text(value.high)}`)];
 }
 
 // ---- What is chosen
@@ -118,7 +124,7 @@ function key(entrant) {
               make('path', {d: shape(entrant, 4), fill: entrant.colour}));
 }
 
-const named = (entrant) => [key(entrant), make('span', {class: 'name'}, entrant.name)];
+const named = (entrant) => [key(entrant), make('span', {class: 'name', title: entrant.name}, entrant.name)];
 
 // ---- Head
 
@@ -154,18 +160,25 @@ function drawVerdict(metric) {
   if (measured.length === 0) return;
   const best = measured.reduce((a, b) => (b.metrics[metric.name].final.mean < a.metrics[metric.name].final.mean ? b : a));
   const own = best.metrics[metric.name];
-  const limit = race.seconds === null || race.interrupted ? 'At the end' : `After ${number(race.seconds)} s each`;
+  const limit = race.interrupted || (race.seconds === null) === (race.iterations === null) ? 'At the end'
+    : `After ${race.seconds === null ? plural(race.iterations, 'iteration') : `${number(race.seconds)} s`} each`;
   verdict.append(`${limit}, `, make('strong', {}, best.name), ` is nearest to the reference: ${metric.title} `,
                  make('strong', {}, number(own.final.mean)), '.');
   if (best === baseline || !own.equal_seconds.speedup) return;
-  const times = (speedup) => [
-    make('strong', {}, `${number(speedup.mean)} times`),
-    speedup.low === null ? '' : ` (${percent} %: ${number(speedup.low)} to ${number(speedup.high)})`];
-  verdict.append(` It reaches the error that ${baseline.name} has at its end `, ...times(own.equal_seconds.speedup), ' sooner');
-  if (own.equal_iterations.speedup) verdict.append(', with ', ...times(own.equal_iterations.speedup), ' fewer iterations');
+  /** "1.5 times (95 %: 1.2 to 1.9) sooner", or later where the factor is below 1. */
+  const times = ({mean, low, high}, more, less) => {
+    const [factor, from, to] = mean >= 1 ? [mean, low, high] : [1 / mean, 1 / high, 1 / low];
+    return [make('strong', {}, `${number(factor)} times`),
+            low === null ? '' : ` (${percent} %: ${number(from)} to ${number(to)})`, mean >= 1 ? more : less];
+  };
+  verdict.append(` It reaches the error that ${baseline.name} has at its end `,
+                 ...times(own.equal_seconds.speedup, ' sooner', ' later'));
+  if (own.equal_iterations.speedup) {
+    verdict.append(', with ', ...times(own.equal_iterations.speedup, ' fewer iterations', ' as many iterations'));
+  }
   verdict.append('.');
   const {low, high} = own.equal_seconds.speedup;
-  if (low !== null && low <= 1 && high >= 1) verdict.append(` ${plural(seeds, 'seed')} cannot tell that from no gain at all.`);
+  if (low !== null && low <= 1 && high >= 1) verdict.append(` ${plural(seeds, 'seed')} cannot tell that time from the same time.`);
 }
 
 // ---- Plots
@@ -259,7 +272,7 @@ function plot(figure, metric, axis) {
     const banded = points.filter((point) => point.low > 0);
     if (banded.length > 1) {
       const edge = (side) => banded.map((point) => `${f(px(point.x))},${f(Math.max(-1e4, Math.min(1e4, py(point[side]))))}`);
-      group.append(make('path', {class: 'band', fill: entrant.colour, d: `M${[...edge('low'), ...edge('high').reverse()].join('L')}z`}));
+      group.append(make('path', {class: 'band', fill: entrant.colour, opacity: Math.min(0.16, 0.6 / entrants.length), d: `M${[...edge('low'), ...edge('high').reverse()].join('L')}z`}));
     }
     group.append(make('path', {class: 'line', stroke: entrant.colour,
                                d: `M${points.map((point) => `${f(px(point.x))},${f(py(point.mean))}`).join('L')}`}));
@@ -345,25 +358,25 @@ function drawEqual(metric) {
   const bestEnd = least((entrant) => values(entrant).final?.mean);
   const table = at('equal');
   const unreached = (equal) => (equal.reached === 0 ? 'not reached' : `reached by ${equal.reached} of ${seeds} seeds`);
-  const equal = (entrant, axis, text) => {
+  const equal = (entrant, axis) => {
     const {reached, at: place, speedup} = values(entrant)[`equal_${axis}`];
     if (!place) return [make('td', {colspan: 2, class: 'quiet'}, unreached({reached}))];
     const best = place.mean === least((other) => values(other)[`equal_${axis}`].at?.mean);
-    return [cells(estimate(place, text), best),
-            cells(estimate(speedup, (value) => `${number(value)}×`), best)];
+    return [cells(estimate(place, entrant === baseline && axis === 'iterations' ? number : digits), best),
+            entrant === baseline ? make('td', {}, '1×') : cells(estimate(speedup, digits, '×'), best)];
   };
   table.replaceChildren(
     make('thead', {},
-      make('tr', {}, make('th', {rowspan: 2}, 'estimator'), make('th', {class: 'group', colspan: 4}, 'at its end'),
+      make('tr', {}, make('th', {rowspan: 2}, 'estimator'), make('th', {class: 'group', colspan: 3}, 'at its end'),
            make('th', {class: 'group', colspan: 4}, `to the error of ${baseline.name} at its end`)),
-      row('th', [metric.title, 'iterations', 'seconds', 'ms an iteration', 'iterations', 'fewer', 'seconds', 'sooner'])),
+      row('th', [metric.title, 'iterations', 'seconds', 'iterations', 'fewer', 'seconds', 'sooner'])),
     make('tbody', {}, ...ranked(metric).map((entrant) => {
       const iterations = totals(entrant, 'iterations'), seconds = totals(entrant, 'seconds');
       const {final} = values(entrant);
       return make('tr', {'data-name': entrant.name},
         make('th', {scope: 'row'}, ...named(entrant), entrant === baseline ? make('span', {class: 'badge'}, 'baseline') : null),
-        cells(estimate(final), final?.mean === bestEnd), cells([number(iterations / seeds)]), cells([number(seconds / seeds)]),
-        cells([number(1000 * seconds / iterations)]), ...equal(entrant, 'iterations', number), ...equal(entrant, 'seconds', number));
+        cells(estimate(final), final?.mean === bestEnd), cells([number(iterations / seeds)]), cells([digits(seconds / seeds)]),
+        ...equal(entrant, 'iterations'), ...equal(entrant, 'seconds'));
     })));
 }
 
@@ -378,8 +391,8 @@ function drawCost() {
     make('thead', {}, row('th', ['estimator', ...passes.map(([name]) => name), 'all', 'photons stored an iteration'])),
     make('tbody', {}, ...entrants.map((entrant) => {
       const each = passes.map(([, kernels]) => milliseconds(entrant, kernels));
-      return make('tr', {}, make('th', {scope: 'row'}, ...named(entrant)), ...each.map((value) => make('td', {}, number(value))),
-        make('td', {}, number(each.reduce((a, b) => a + b, 0))),
+      return make('tr', {}, make('th', {scope: 'row'}, ...named(entrant)), ...each.map((value) => make('td', {}, digits(value))),
+        make('td', {}, digits(each.reduce((a, b) => a + b, 0))),
         make('td', {}, number(totals(entrant, 'stored_photons') / totals(entrant, 'iterations'))));
     })));
 }
@@ -438,7 +451,7 @@ function buildTiles() {
       make('span', {class: 'slope'}, `${(100 * part).toFixed(1)} %`),
       make('span', {class: 'meter'}, make('i', {style: `width:${(100 * part).toFixed(2)}%;background:${colour}`})));
     const legend = make('ul', {class: 'legend'}, ...entrants.map((entrant) => line(named(entrant), entrant[share], entrant.colour)),
-      rest > 5e-4 ? line([make('span', {class: 'name'}, 'a draw (light gray)')], rest, '#c8c8c8') : null);
+      rest > 5e-4 ? line([make('span', {class: 'name'}, 'draw (gray)')], rest, '#c8c8c8') : null);
     own.crop.replaceWith(legend);
     tiles.push({...own, source: () => pictures[name]});
     at('winners').append(own.figure);
@@ -476,7 +489,7 @@ function drawTiles(metric) {
     Object.assign(magnified.style, {width: part(race.width, crop.size), height: part(race.height, crop.size),
                                     left: part(-crop.x, crop.size), top: part(-crop.y, crop.size)});
     if (entrant) {
-      told.textContent = number(entrant.metrics[metric.name].final?.mean ?? null);
+      told.textContent = digits(entrant.metrics[metric.name].final?.mean ?? null);
       told.title = `${metric.title} at its end`;
     }
   }
@@ -508,7 +521,7 @@ function drawSettings() {
   const lines = [
     ['scene', race.scene.file], ['hash of the scene', race.scene.hash], ['environment', race.scene.environment ?? 'none'],
     ['glass without a volume', race.scene.thin_glass], ['reference', race.reference],
-    ['each gets', at('facts').textContent.split(' · ')[2]], ['seeds', race.seeds.join(', ')],
+    ['each gets', at('facts').textContent.split(' · ')[2].replace(' each with', ' with')], ['seeds', race.seeds.join(', ')],
     ...common.map(([name, value]) => [name.replace('_', ' '), String(value)]),
     ['exposure of the pictures', `${race.exposure} stops`], ['device', race.device], ['driver', race.driver],
     ['version', `vkcppm ${race.version}`]];
