@@ -41,7 +41,7 @@ function number(value) {
   const size = Math.abs(value);
   if (size >= 1e6 || size < 1e-5) {
     const [digits, exponent] = value.toExponential(2).split('e');
-    return `${digits}·10${[...String(Number(exponent))].map((c) => '⁰¹²³⁴⁵⁶⁷⁸⁹'[c] ?? '⁻').join('')}`;
+    return `${Number(digits)}·10${[...String(Number(exponent))].map((c) => '⁰¹²³⁴⁵⁶⁷⁸⁹'[c] ?? '⁻').join('')}`;
   }
   return size >= 100 ? Math.round(value).toLocaleString('en') : String(Number(value.toPrecision(3)));
 }
@@ -82,13 +82,18 @@ function writeAddress() {
   const {x, y, size} = state.crop;
   const hide = state.hidden.size ? `&hide=${[...state.hidden].map(encodeURIComponent).join(',')}` : '';
   const hash = `#metric=${state.metric}&view=${state.view}&crop=${x},${y},${size}${hide}`;
+  written = hash;
   if (location.hash !== hash) location.replace(hash);
 }
 
+let written = null;  // the address that this page gave itself last
+
 function choose(change) {
   Object.assign(state, change);
+  const pictures = 'crop' in change || 'view' in change;
+  if (pictures) drawTiles(chosenMetric());
+  else draw();
   writeAddress();
-  draw();
 }
 
 const chosenMetric = () => race.metrics.find((metric) => metric.name === state.metric);
@@ -320,7 +325,7 @@ function plot(figure, metric, axis) {
     cursor.setAttribute('visibility', 'visible');
     tip.hidden = false;
     tip.replaceChildren(make('table', {}, ...rows.map(({entrant, point}) => make('tr', {},
-      make('td', {}, ...named(entrant)), make('td', {}, ...estimate(point)),
+      make('td', {}, ...named(entrant)), make('td', {}, ...(rows.length > 5 ? [digits(point.mean)] : estimate(point))),
       make('td', {class: 'quiet'}, `${number(point.x)}${axis === 'seconds' ? ' s' : ''}`)))));
     const right = snapped / scale > svg.clientWidth / 2;
     tip.style.left = right ? '' : `${snapped / scale + 26}px`;
@@ -568,6 +573,7 @@ drawCost();
 buildTiles();
 draw();
 addEventListener('hashchange', () => {
+  if (location.hash === written) return;
   readAddress();
   draw();
 });
