@@ -108,7 +108,7 @@ void expect_failure(const test::ProcessResult& result, int code, const Words& to
 // ---- Help, version and the listing commands
 
 TEST_F(Cli, HelpAndVersionGoToStandardOutput) {
-    for (const Words& words : {Words{"--help"}, Words{"-h"}, Words{"compare", "--help"}, Words{"info", "--help"},
+    for (const Words& words : {Words{"--help"}, Words{"-h"}, Words{"race", "--help"}, Words{"compare", "--help"}, Words{"info", "--help"},
                                Words{"devices", "--help"}}) {
         const auto result = run(words);
         expect_done(result);
