@@ -42,14 +42,14 @@ fs::path find_reference(const RaceOptions& options) {
 }
 
 /// A line for every attribute of a reference of this program that says that it shows something else than the race.
-std::vector<std::string> mismatches(const fs::path& file, const ExrAttributes& wanted) {
+std::vector<std::string> mismatches(const RaceInput& input, const ExrAttributes& wanted) {
     std::vector<std::string> lines;
-    for (const auto& [name, value] : read_exr_attributes(file)) {
+    for (const auto& [name, value] : input.reference_attributes) {
         for (const char* seen : {"scene_hash", "thin_glass", "camera", "aperture", "focus_distance"}) {
             if (name != std::string("vkcppm.") + seen) continue;
             for (const auto& [same, other] : wanted) {
                 if (same == name && other != value) {
-                    lines.push_back(fmt::format("{} has {} {}, the race {}", file.string(), seen, value, other));
+                    lines.push_back(fmt::format("{} has {} {}, the race {}", input.reference.string(), seen, value, other));
                 }
             }
         }
@@ -105,7 +105,7 @@ void write_pictures(const RaceOptions& options, const RaceInput& input, const Ra
     };
     const fs::path copy = options.folder / "reference.exr";
     if (fs::weakly_canonical(copy) != fs::weakly_canonical(input.reference)) {
-        write_exr(copy, reference, read_exr_attributes(input.reference));
+        write_exr(copy, reference, input.reference_attributes);
     }
     write_bitmap("reference", pictures.reference);
     write_bitmap("winner", pictures.winner.map);
@@ -131,17 +131,18 @@ void execute(const RaceOptions& options) {
     catch_interrupts();
     const Scene scene = load_scene(options.scene);
     print_warnings(scene.warnings);
-    const RaceInput input{scene, find_reference(options)};
+    const fs::path file = find_reference(options);
+    const RaceInput input{scene, file, read_exr_attributes(file)};
     RaceSettings wanted = options.race;
     for (Entrant& entrant : wanted.entrants) {
-        if (!entrant.settings.size) entrant.settings.size = read_exr(input.reference).extent;
+        if (!entrant.settings.size) entrant.settings.size = read_exr(file).extent;
     }
     const RaceSettings race = resolve_race(wanted, scene);
     const Settings& settings = race.entrants.front().settings;
-    const Image reference = read_reference(input.reference, *settings.size);
+    const Image reference = read_reference(file, *settings.size);
     Rendering sample;
     sample.settings = settings;
-    print_warnings(mismatches(input.reference, exr_attributes(options.scene, scene, sample)));
+    print_warnings(mismatches(input, exr_attributes(options.scene, scene, sample)));
     make_folder(options.folder);
     Device device(options.device);
     require_validation(options.device, device);

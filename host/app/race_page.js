@@ -269,6 +269,13 @@ function plot(figure, metric, axis) {
                make('text', {x: box.left + 6, y: Number(y) + 15}, `${baseline.name} at its end`));
   }
 
+  const noise = metric.name === 'relmse' ? Number(race.reference.attributes['vkcppm.relmse']) : NaN;
+  if (noise > bounds.y[0] && noise < bounds.y[1]) {
+    const y = f(py(noise));
+    svg.append(make('line', {class: 'level', 'data-noise': noise, x1: box.left, x2: box.right, y1: y, y2: y}),
+               make('text', {x: box.right - 4, y: Number(y) - 6, 'text-anchor': 'end'}, 'noise of the reference'));
+  }
+
   const lines = make('g', {'clip-path': `url(#${clip})`});
   for (const entrant of shown()) {
     const points = pointsOf(entrant, metric, axis);
@@ -525,7 +532,9 @@ function drawSettings() {
   const common = Object.entries(settings).filter(([name]) => ![...own, 'iterations', 'time', 'seed'].includes(name));
   const lines = [
     ['scene', race.scene.file], ['hash of the scene', race.scene.hash], ['environment', race.scene.environment ?? 'none'],
-    ['glass without a volume', race.scene.thin_glass], ['reference', race.reference],
+    ['glass without a volume', race.scene.thin_glass], ['reference', race.reference.file], ...Object.entries(race.reference.attributes)
+      .filter(([name]) => ['iterations_done', 'samples_done', 'estimator', 'photons', 'relmse'].includes(name.replace('vkcppm.', '')))
+      .map(([name, value]) => [`${name.replace('vkcppm.', '').replace('_', ' ')} of the reference`, value]),
     ['each gets', at('facts').textContent.split(' · ')[2].replace(' each with', ' with')], ['seeds', race.seeds.join(', ')],
     ...common.map(([name, value]) => [name.replace('_', ' '), String(value)]),
     ['exposure of the pictures', `${race.exposure} stops`], ['device', race.device], ['driver', race.driver],

@@ -103,7 +103,8 @@ Json race_json(const RaceOptions& options, const RaceInput& input, const RaceRes
     json["scene"] = scene_json(options.scene, input.scene);
     json["device"] = first.reports.front().device;
     json["driver"] = first.reports.front().driver;
-    json["reference"] = input.reference.string();
+    json["reference"] = {{"file", input.reference.string()}, {"attributes", Json::object()}};
+    for (const auto& [name, value] : input.reference_attributes) json["reference"]["attributes"][name] = value;
     json["width"] = first.image.extent.width;
     json["height"] = first.image.extent.height;
     json["exposure"] = options.exposure;

@@ -7,6 +7,7 @@
 
 #include "app/options.h"
 #include "app/race_pictures.h"
+#include "io/exr.h"
 #include "render/race.h"
 #include "scene/scene.h"
 
@@ -19,6 +20,7 @@ std::string file_stem(const Entrant& entrant);
 struct RaceInput {
     const Scene& scene;
     std::filesystem::path reference;
+    ExrAttributes reference_attributes;  // of that file
 };
 
 /// Version, command, scene, device, reference, what each got, and of every entrant: settings, colour, files, shares of

@@ -29,7 +29,7 @@ struct Files {
         options.command = "vkcppm race 'a </script> b.gltf' -o out";
         scene.file = "</script><!-- &amp; .gltf";
         pictures = race_pictures(result, reference, 0.0);
-        json = race_json(options, {scene, "references/a.exr"}, result, pictures);
+        json = race_json(options, {scene, "references/a.exr", {{"vkcppm.relmse", "0.001"}}}, result, pictures);
         page = race_page(json, pictures);
     }
 
@@ -111,6 +111,7 @@ TEST(RaceRecord, HoldsEveryEntrantAndMetric) {
     const Files files(ten);
     EXPECT_EQ(files.json["baseline"], "sppm");
     EXPECT_EQ(files.json["seeds"], Json({7, 8}));
+    EXPECT_EQ(files.json["reference"], Json({{"file", "references/a.exr"}, {"attributes", {{"vkcppm.relmse", "0.001"}}}}));
     ASSERT_EQ(files.json["entrants"].size(), ten.size());
     for (std::size_t e = 0; e < ten.size(); ++e) {
         const Json& entrant = files.json["entrants"][e];
