@@ -207,6 +207,11 @@ function pointsOf(entrant, metric, axis) {
   return entrant.metrics[metric.name][`against_${axis}`].points.filter((point) => point.x > 0 && point.mean > 0);
 }
 
+/** What the reference says of its own error; NaN where it does not. */
+function noiseOf(metric) {
+  return metric.name === 'relmse' ? Number(race.reference.attributes['vkcppm.relmse']) : NaN;
+}
+
 /** Bounds of all points, a little room around them; null without points. */
 function boundsOf(metric, axis) {
   const points = shown().flatMap((entrant) => pointsOf(entrant, metric, axis));
@@ -220,8 +225,9 @@ function boundsOf(metric, axis) {
   // An interval of two seeds may span many decades: the means decide, the bands are clipped.
   const means = points.map((point) => point.mean);
   const [lowest, highest] = [Math.min(...means), Math.max(...means)];
-  return {x: room(Math.min(...xs), Math.max(...xs), 0.02),
-          y: room(Math.max(Math.min(...ys), lowest / 3), Math.min(Math.max(...ys), highest * 3), 0.04)};
+  const noise = noiseOf(metric);
+  const low = Math.min(Math.max(Math.min(...ys), lowest / 3), noise > lowest / 10 ? noise : Infinity);
+  return {x: room(Math.min(...xs), Math.max(...xs), 0.02), y: room(low, Math.min(Math.max(...ys), highest * 3), 0.04)};
 }
 
 function plot(figure, metric, axis) {
@@ -269,7 +275,7 @@ function plot(figure, metric, axis) {
                make('text', {x: box.left + 6, y: Number(y) + 15}, `${baseline.name} at its end`));
   }
 
-  const noise = metric.name === 'relmse' ? Number(race.reference.attributes['vkcppm.relmse']) : NaN;
+  const noise = noiseOf(metric);
   if (noise > bounds.y[0] && noise < bounds.y[1]) {
     const y = f(py(noise));
     svg.append(make('line', {class: 'level', 'data-noise': noise, x1: box.left, x2: box.right, y1: y, y2: y}),
