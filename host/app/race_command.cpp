@@ -49,7 +49,8 @@ std::vector<std::string> mismatches(const RaceInput& input, const ExrAttributes&
             if (name != std::string("vkcppm.") + seen) continue;
             for (const auto& [same, other] : wanted) {
                 if (same == name && other != value) {
-                    lines.push_back(fmt::format("{} has {} {}, the race {}", input.reference.string(), seen, value, other));
+                    lines.push_back(
+                        fmt::format("{} has {} {}, the race {}", input.reference.string(), seen, value, other));
                 }
             }
         }
@@ -60,7 +61,10 @@ std::vector<std::string> mismatches(const RaceInput& input, const ExrAttributes&
 void make_folder(const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
-    if (error) throw Error(ExitCode::cannot_write, fmt::format("cannot make the folder {}: {}", folder.string(), error.message()));
+    if (error) {
+        throw Error(ExitCode::cannot_write,
+                    fmt::format("cannot make the folder {}: {}", folder.string(), error.message()));
+    }
     check_writable(folder / "index.html");
 }
 
@@ -93,13 +97,14 @@ RaceResult race_with_progress(const Scene& scene, const RaceOptions& options, co
         return !interrupted();
     });
     if (!options.quiet) {
-        line.finish_with(fmt::format("{} entrants, {} seeds in {:.1f} s", result.runs.size(), result.seeds.size(), wall));
+        line.finish_with(
+            fmt::format("{} entrants, {} seeds in {:.1f} s", result.runs.size(), result.seeds.size(), wall));
     }
     return result;
 }
 
-void write_pictures(const RaceOptions& options, const RaceInput& input, const RaceResult& result, const Image& reference,
-                    const RacePictures& pictures) {
+void write_pictures(const RaceOptions& options, const RaceInput& input, const RaceResult& result,
+                    const Image& reference, const RacePictures& pictures) {
     const auto write_bitmap = [&](const std::string& name, const Bitmap& bitmap) {
         write_file(options.folder / (name + ".png"), encode_png(bitmap));
     };

@@ -19,9 +19,15 @@ constexpr std::string_view page =
 constexpr std::string_view style =
 #include "race_page.css.inc"
     ;
-constexpr std::string_view script =
-#include "race_page.js.inc"
-    ;
+constexpr std::string_view scripts[] = {
+#include "race_plot.js.inc"
+    ,
+#include "race_tables.js.inc"
+    ,
+#include "race_tiles.js.inc"
+    ,
+#include "race_page.js.inc"  // the last: it calls the others
+};
 
 std::string data_uri(const Bitmap& bitmap) { return "data:image/png;base64," + encode_base64(encode_png(bitmap)); }
 
@@ -72,12 +78,14 @@ std::string race_page(const Json& race, const RacePictures& pictures) {
     for (Json& entrant : drawn["entrants"]) {
         for (Json& run : entrant["runs"]) run.erase("curve");
     }
+    std::string script;
+    for (const std::string_view part : scripts) script += part;
     const std::pair<std::string_view, std::string> parts[] = {
         {"@title@", escaped(race["scene"]["file"].get<std::string>())},
         {"@style@", std::string(style)},
         {"@race@", script_text(drawn)},
         {"@pictures@", script_text(pictures_json(pictures))},
-        {"@script@", std::string(script)},
+        {"@script@", script},
     };
     std::string html;
     std::string_view rest = page;

@@ -9,7 +9,7 @@
 
 namespace vkcppm {
 
-/// HTML that needs nothing besides itself: race_page.html with race_page.css, race_page.js, the pictures and `race`
+/// HTML that needs nothing besides itself: race_page.html with race_page.css, race_*.js, the pictures and `race`
 /// (race_json) in it, the latter without the curves of single seeds, which are not drawn.
 std::string race_page(const nlohmann::ordered_json& race, const RacePictures& pictures);
 

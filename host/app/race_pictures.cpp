@@ -52,11 +52,14 @@ RacePictures race_pictures(const RaceResult& result, const Image& reference, dou
         errors_around.push_back(neighbourhood_mean(extent, run.squared_error, winner_reach));
     }
     pictures.difference = {0.0, positive_quantile(all_differences, difference_quantile), false};
-    pictures.radius = {positive_quantile(all_radii, radius_tail), positive_quantile(all_radii, 1.0 - radius_tail), true};
+    pictures.radius.low = positive_quantile(all_radii, radius_tail);
+    pictures.radius.high = positive_quantile(all_radii, 1.0 - radius_tail);
+    pictures.radius.logarithmic = true;
     pictures.reference = to_bitmap(reference, exposure);
     for (const RaceRun& run : result.runs) {
+        const std::vector<float> difference = absolute_difference(run.image, reference);
         pictures.entrants.push_back({to_bitmap(run.image, exposure),
-                                     false_colours(extent, absolute_difference(run.image, reference), pictures.difference),
+                                     false_colours(extent, difference, pictures.difference),
                                      false_colours(extent, run.radius, pictures.radius)});
     }
     pictures.winner = winner_picture(extent, errors);

@@ -34,7 +34,9 @@ Estimate geometric_mean(std::span<const double> values) {
     }
     Estimate estimate = arithmetic_mean(logarithms);
     estimate.mean = std::exp(estimate.mean);
-    if (estimate.interval) estimate.interval = Interval{std::exp(estimate.interval->low), std::exp(estimate.interval->high)};
+    if (estimate.interval) {
+        estimate.interval = Interval{std::exp(estimate.interval->low), std::exp(estimate.interval->high)};
+    }
     return estimate;
 }
 

@@ -21,7 +21,8 @@ glm::u8vec3 false_colour(double t) {
     const std::size_t i = std::min(std::size_t(at), classes.size() - 2);
     glm::u8vec3 colour;
     for (int c = 0; c < 3; ++c) {
-        colour[c] = std::uint8_t(std::lround(std::lerp(double(classes[i][c]), double(classes[i + 1][c]), at - double(i))));
+        const double below = classes[i][c], above = classes[i + 1][c];
+        colour[c] = std::uint8_t(std::lround(std::lerp(below, above, at - double(i))));
     }
     return colour;
 }

@@ -45,8 +45,8 @@ protected:
 
     /// ref.exr of 32x24 pixels, of the torus.
     void make_reference() const {
-        const auto result = run({scene("torus"), "-o", "ref.exr", "--size", "32x24", "--photons", "4000", "--iterations", "9",
-                                 "--seed", "77", "--quiet"});
+        const auto result = run({scene("torus"), "-o", "ref.exr", "--size", "32x24", "--photons", "4000",
+                                 "--iterations", "9", "--seed", "77", "--quiet"});
         ASSERT_EQ(result.exit_code, 0) << result.err;
     }
 
@@ -76,7 +76,9 @@ void expect_failure(const test::ProcessResult& result, int code, const Words& to
     EXPECT_EQ(result.out, "");
     const std::size_t at = result.err.find("error: ");
     ASSERT_NE(at, std::string::npos) << result.err;
-    for (const std::string& part : told) EXPECT_TRUE(contains(result.err.substr(at), part)) << part << "\n" << result.err;
+    for (const std::string& part : told) {
+        EXPECT_TRUE(contains(result.err.substr(at), part)) << part << "\n" << result.err;
+    }
 }
 
 TEST_F(RaceCli, TwiceGivesTheSameCurvesAndPictures) {
@@ -143,7 +145,8 @@ TEST_F(RaceCli, RefusesReferencesThatDoNotFit) {
     expect_failure(race("out", {"--reference", "none.exr"}), 66, {"none.exr"});
     expect_failure(race("out", {"--reference", "ref.exr", "--size", "32x23"}), 2, {"ref.exr", "32x24", "32x23"});
     expect_failure(race("out", {"--reference", scene("torus")}), 65, {"torus.gltf"});
-    expect_failure(race("out", {"--reference", "ref.exr", "--estimators", "cppm,sppm:alpha=1"}), 2, {"--alpha 1", "sppm:alpha=1"});
+    expect_failure(race("out", {"--reference", "ref.exr", "--estimators", "cppm,sppm:alpha=1"}), 2,
+                   {"--alpha 1", "sppm:alpha=1"});
     expect_failure(race("out", {"--reference", "ref.exr", "--estimators", "cppm,cppm"}), 2, {"cppm", "twice"});
     EXPECT_FALSE(fs::exists(folder_ / "out"));
     test::write_bytes(folder_ / "file", "");
@@ -157,15 +160,15 @@ TEST_F(RaceCli, WarnsOfAReferenceThatShowsSomethingElse) {
     const auto lens = race("out", {"--reference", "ref.exr", "--aperture", "0.1", "--focus-distance", "3"});
     EXPECT_EQ(lens.exit_code, 0);
     EXPECT_TRUE(contains(lens.err, "warning: ref.exr has aperture 0.0, the race 0.1")) << lens.err;
-    const auto other = run({"race", scene("caustic"), "-o", "out", "--photons", "500", "--iterations", "1", "--reference",
-                            "ref.exr", "--quiet"});
+    const auto other = run({"race", scene("caustic"), "-o", "out", "--photons", "500", "--iterations", "1",
+                            "--reference", "ref.exr", "--quiet"});
     EXPECT_TRUE(contains(other.err, "warning: ref.exr has scene_hash")) << other.err;
 }
 
 TEST_F(RaceCli, EndsEarlyAndWritesWhatThereIs) {
     make_reference();
-    test::Process process({VKCPPM_PROGRAM, "race", scene("torus"), "-o", "out", "--reference", "ref.exr", "--photons", "1000",
-                           "--time", "1h", "--seeds", "3"},
+    test::Process process({VKCPPM_PROGRAM, "race", scene("torus"), "-o", "out", "--reference", "ref.exr", "--photons",
+                           "1000", "--time", "1h", "--seeds", "3"},
                           folder_.path());
     ASSERT_TRUE(process.wait_for_message(" left; MSE cppm "));
     process.send(SIGINT);

@@ -145,7 +145,8 @@ TEST_F(Race, CutShortItKeepsAPictureOfEveryone) {
     RaceSettings race = race_of({"cppm", "sppm", "appm"});
     race.seeds = 2;
     race = resolve_race(race, scene);
-    const RaceResult at_once = run_race(scene, race, black(), test::plain_device(), [](const RaceProgress&) { return false; });
+    const auto stop = [](const RaceProgress&) { return false; };
+    const RaceResult at_once = run_race(scene, race, black(), test::plain_device(), stop);
     EXPECT_TRUE(at_once.interrupted);
     EXPECT_EQ(at_once.seeds, std::vector<std::uint32_t>{3});
     for (const RaceRun& run : at_once.runs) {
@@ -153,8 +154,8 @@ TEST_F(Race, CutShortItKeepsAPictureOfEveryone) {
         EXPECT_EQ(run.curves[0].back().iterations, 1u) << run.entrant.name;
         EXPECT_EQ(run.image.rgb.size(), 24u * 18u);
     }
-    const RaceResult later =
-        run_race(scene, race, black(), test::plain_device(), [](const RaceProgress& progress) { return progress.seed == 0; });
+    const auto first_seed = [](const RaceProgress& progress) { return progress.seed == 0; };
+    const RaceResult later = run_race(scene, race, black(), test::plain_device(), first_seed);
     EXPECT_TRUE(later.interrupted);
     EXPECT_EQ(later.seeds, std::vector<std::uint32_t>{3}) << "the second seed was not complete";
     for (const RaceRun& run : later.runs) {

@@ -165,9 +165,10 @@ TEST(Options, ARaceIsOfThreeForAMinute) {
 
 TEST(Options, EntrantsHaveParametersOfTheirOwn) {
     const RaceOptions options =
-        parse_race({"--estimators", "cppm:beta=1.5:k=0.7,sppm:alpha=0.5,ftest:rings=3:sectors=8:significance=1e-2:knn=20,cppm",
-                    "--k", "0.6", "--photons", "77", "--iterations", "9", "--seeds", "4", "--seed", "5", "--size", "8x4",
-                    "--reference", "r.exr", "--exposure", "2", "--device", "0", "--quiet"});
+        parse_race({"--estimators",
+                    "cppm:beta=1.5:k=0.7,sppm:alpha=0.5,ftest:rings=3:sectors=8:significance=1e-2:knn=20,cppm", "--k", "0.6",
+                    "--photons", "77", "--iterations", "9", "--seeds", "4", "--seed", "5", "--size", "8x4", "--reference",
+                    "r.exr", "--exposure", "2", "--device", "0", "--quiet"});
     const std::vector<Entrant>& entrants = options.race.entrants;
     ASSERT_EQ(entrants.size(), 4u);
     EXPECT_EQ(entrants[0].name, "cppm:beta=1.5:k=0.7");

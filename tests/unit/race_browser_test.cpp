@@ -79,8 +79,8 @@ protected:
     /// The page after its script ran, with what follows # in its address; without the data that it was drawn from.
     std::string drawn(const std::string& hash) {
         const test::ProcessResult result = test::run_process(
-            {*browser_, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--window-size=1280,900",
-             "--user-data-dir=" + (folder_ / "profile").string(), "--virtual-time-budget=5000", "--dump-dom",
+            {*browser_, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+             "--window-size=1280,900", "--user-data-dir=" + (folder_ / "profile").string(), "--virtual-time-budget=5000", "--dump-dom",
              "file://" + (folder_ / "index.html").string() + hash},
             folder_.path());
         EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -120,7 +120,8 @@ TEST_F(RaceInBrowser, DrawsTenEntrants) {
     const std::string page = drawn("");
     expect_plots(page, "mse", 10, 7);
     EXPECT_NE(between(page, "<h1 id=\"heading\">", "</h1>").find("Race: script&gt; &amp; b.gltf"), std::string::npos);
-    EXPECT_EQ(between(page, "<pre id=\"command\" tabindex=\"0\">", "</pre>"), "vkcppm race \"scene\" &lt;&amp;&gt; -o out");
+    EXPECT_EQ(between(page, "<pre id=\"command\" tabindex=\"0\">", "</pre>"),
+              "vkcppm race \"scene\" &lt;&amp;&gt; -o out");
     for (const std::string& name : names) {
         EXPECT_NE(between(page, "<table id=\"equal\">", "</table>").find(">" + name + "<"), std::string::npos) << name;
         EXPECT_NE(between(page, "<table id=\"cost\">", "</table>").find(">" + name + "<"), std::string::npos) << name;

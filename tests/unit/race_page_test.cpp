@@ -21,8 +21,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const std::vector<std::string> ten = {"sppm", "cppm", "appm", "cppm:beta=1.5", "cppm-lf", "cppm-gof", "cppm-fold", "ftest",
-                                      "sppm-kz", "cppm:k=0.7:beta=1.1"};
+const std::vector<std::string> ten = {"sppm",     "cppm",      "appm",  "cppm:beta=1.5", "cppm-lf",
+                                      "cppm-gof", "cppm-fold", "ftest", "sppm-kz",       "cppm:k=0.7:beta=1.1"};
 
 struct Files {
     explicit Files(const std::vector<std::string>& names) : result(test::made_up_race(names)) {
@@ -111,7 +111,8 @@ TEST(RaceRecord, HoldsEveryEntrantAndMetric) {
     const Files files(ten);
     EXPECT_EQ(files.json["baseline"], "sppm");
     EXPECT_EQ(files.json["seeds"], Json({7, 8}));
-    EXPECT_EQ(files.json["reference"], Json({{"file", "references/a.exr"}, {"attributes", {{"vkcppm.relmse", "0.001"}}}}));
+    EXPECT_EQ(files.json["reference"]["file"], "references/a.exr");
+    EXPECT_EQ(files.json["reference"]["attributes"], Json({{"vkcppm.relmse", "0.001"}}));
     ASSERT_EQ(files.json["entrants"].size(), ten.size());
     for (std::size_t e = 0; e < ten.size(); ++e) {
         const Json& entrant = files.json["entrants"][e];

@@ -58,12 +58,13 @@ TEST(Seeds, AgainstTimeCurvesAreInterpolatedWhereAllReach) {
     EXPECT_NEAR(result.x.back(), 1.28, 1e-14) << "the fast seed's last";
     for (std::size_t i = 0; i < result.x.size(); ++i) {
         const double fast = 0.1 * 0.01 / result.x[i];
-        EXPECT_NEAR(result.error[i].mean, 2.0 * fast, 1e-12 * fast) << "geometric mean of fast and 4 fast, at " << result.x[i];
+        EXPECT_NEAR(result.error[i].mean, 2.0 * fast, 1e-12 * fast) << "of fast and 4 fast, at " << result.x[i];
     }
 }
 
 TEST(Seeds, IterationsThatOneSeedLacksAreLeftOutButTheFirstEnd) {
-    const std::vector<Curve> seeds = {power_law({1, 2, 4, 7}, 0.1, -0.5, 1.0), power_law({1, 2, 4, 8, 9}, 0.1, -0.5, 1.0)};
+    const std::vector<Curve> seeds = {power_law({1, 2, 4, 7}, 0.1, -0.5, 1.0),
+                                      power_law({1, 2, 4, 8, 9}, 0.1, -0.5, 1.0)};
     const Band result = band(seeds, mse, Axis::iterations);
     EXPECT_EQ(result.x, (std::vector<double>{1, 2, 4, 7}));
     EXPECT_NEAR(result.error.back().mean, 0.1 / std::sqrt(7.0), 1e-15) << "a power law is interpolated without error";

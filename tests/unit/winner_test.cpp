@@ -29,7 +29,10 @@ TEST(Winner, NeighbourhoodMeanIsThatOfTheWindow) {
             double sum = 0.0;
             int count = 0;
             for (int v = std::max(y - 1, 0); v <= std::min(y + 1, 3); ++v) {
-                for (int u = std::max(x - 1, 0); u <= std::min(x + 1, 4); ++u, ++count) sum += values[std::size_t(5 * v + u)];
+                for (int u = std::max(x - 1, 0); u <= std::min(x + 1, 4); ++u) {
+                    sum += values[std::size_t(5 * v + u)];
+                    ++count;
+                }
             }
             EXPECT_NEAR(means[std::size_t(5 * y + x)], sum / count, 1e-14) << "column " << x << ", row " << y;
         }
