@@ -1,0 +1,64 @@
+#pragma once
+// A reference picture and its standard error. The light is split in two, and each half made by what converges there:
+//   caustics   what leaves its light by way of one or more delta lobes (mirrors, smooth glass) before it meets any other
+//              lobe: by photons, in discs of about a pixel, with a kernel that extrapolates their radius to 0
+//   the rest   by unbiased path tracing, where every vertex can be connected to the light
+// The two are independent and add up.
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "core/image.h"
+#include "render/report.h"
+#include "render/settings.h"
+#include "scene/scene.h"
+
+namespace vkcppm {
+
+class Device;
+
+struct ReferenceSettings {
+    /// size, camera, lens, seed, max_depth; photons: light paths an iteration of caustics; iterations: of caustics, at
+    /// most; seconds: wall time after which neither half goes on, without it both run to their bounds. The other fields
+    /// are not looked at.
+    Settings render;
+    std::uint32_t samples = 4096;  // paths a pixel, at most; 32..2^24, a multiple of 16
+    double trust = 0.05;           // largest relative standard error of a pixel that is trusted, > 0
+};
+
+struct Reference {
+    Image mean;
+    Image standard_error;          // of the mean, a pixel and channel: from independent batches
+    std::vector<float> trusted;    // [P] 1 or 0: the root mean square of the relative standard error, over the pixel and
+                                   // its eight neighbours, is at most ReferenceSettings::trust. Relative: se^2 over
+                                   // r^2 + 0.01, as relMSE weighs it, the mean over channels.
+    ReferenceSettings settings;    // as resolved
+    std::uint32_t samples = 0;     // paths a pixel, done
+    std::uint32_t iterations = 0;  // of caustics, done
+    double relmse = 0.0;           // expected relMSE (eps 0.01) of the mean itself: that mean over all pixels
+    double relmse_paths = 0.0;     // what each half adds to it
+    double relmse_caustics = 0.0;
+    double caustic_share = 0.0;    // of the picture's light, sum over channels
+    double median_error = 0.0;     // relative standard error of pixels
+    double error_99 = 0.0;         // its 99th percentile
+    std::size_t untrusted = 0;     // pixels
+    Report report;
+};
+
+struct ReferenceProgress {
+    std::uint32_t samples = 0;
+    std::uint32_t iterations = 0;
+    double relmse = 0.0;           // expected, so far
+    double wall_seconds = 0.0;
+};
+
+/// Called between batches; false ends it with what there is, once there are enough batches to tell an error.
+using KeepRefining = std::function<bool(const ReferenceProgress&)>;
+
+/// Throws Error as render() does. Without `seconds` the same settings on the same device give the same bits; with them
+/// the numbers of samples and iterations that were done do, given as bounds.
+Reference make_reference(const Scene& scene, const ReferenceSettings& settings, Device& device,
+                         const KeepRefining& keep_refining);
+
+}  // namespace vkcppm
