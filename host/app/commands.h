@@ -14,6 +14,10 @@ void execute(const RenderOptions& options);
 /// finished and what there is is written. Throws Error(usage) where there is no reference for the scene.
 void execute(const RaceOptions& options);
 
+/// Makes a reference, writes its EXR, and the statistics where asked for, and prints what is known of its error. After
+/// SIGINT or SIGTERM it ends as soon as an error can be told.
+void execute(const ReferenceOptions& options);
+
 /// Prints the measures of core/metrics.h.
 void execute(const CompareOptions& options);
 

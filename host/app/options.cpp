@@ -204,7 +204,8 @@ Options parse_render(const Words& words) {
     std::string text;
 
     CLI::App app("Renders a glTF scene by progressive photon mapping on a Vulkan device.\n"
-                 "Other commands: vkcppm race, vkcppm compare, vkcppm info, vkcppm devices; each has its own --help.\n"
+                 "Other commands: vkcppm race, vkcppm reference, vkcppm compare, vkcppm info, vkcppm devices; each has its\n"
+                 "own --help.\n"
                  "A scene of such a name is given as ./compare.",
                  "vkcppm");
     app.footer(footer);
@@ -356,6 +357,41 @@ Options parse_race(const Words& words) {
     return options;
 }
 
+Options parse_reference(const Words& words) {
+    ReferenceOptions options;
+    ReferenceSettings& settings = options.settings;
+    std::optional<std::uint32_t> samples, iterations;
+    std::string text;
+    CLI::App app("Makes a picture to measure others against, with its standard error a pixel: paths where they converge,\n"
+                 "photons for caustics. A scene of the name of a command is given as ./compare.",
+                 "vkcppm reference");
+    add_scene(app, options.scene);
+    app.add_option("-o", options.output, "The picture: linear EXR, R G B, StdErr.R G B and Trust")
+        ->type_name("REF.exr")
+        ->required();
+    app.add_flag("--half", options.half, "16-bit floats: a small file");
+    add(app, "--time", "TIME", settings.render.seconds, parse_seconds,
+        "Stop when this time has passed: 90, 90s, 2m, 1.5h, 500ms");
+    add(app, "--samples", "N", samples, parse_whole,
+        fmt::format("Paths a pixel, at most (default: {}; unbounded with --time)", settings.samples));
+    add(app, "--iterations", "N", iterations, parse_whole,
+        fmt::format("Iterations of caustics, at most (default: {}; unbounded with --time)", settings.render.iterations));
+    add(app, "--trust", "X", settings.trust, parse_real,
+        fmt::format("Largest relative standard error of a pixel that is trusted (default: {})", settings.trust));
+    add_common(app, settings.render);
+    add_device(app, options.device);
+    app.add_option("--stats", options.stats, "Times and counts")->type_name("FILE.json");
+    app.add_flag("--quiet", options.quiet, "No progress, only the summary");
+    app.add_flag("--json", options.json, "Print the summary as JSON");
+    if (!parse(app, words, text)) {
+        return TextOptions{text};
+    }
+    const bool timed = settings.render.seconds.has_value();
+    settings.samples = samples.value_or(timed ? unbounded_samples : settings.samples);
+    settings.render.iterations = iterations.value_or(timed ? unbounded_iterations : settings.render.iterations);
+    return options;
+}
+
 Options parse_compare(const Words& words) {
     CompareOptions options;
     std::string text;
@@ -400,6 +436,9 @@ Options parse_options(int argc, const char* const* argv) {
     const auto arguments = [&] { return Words(words.begin() + 1, words.end()); };
     if (command == "race") {
         return parse_race(arguments());
+    }
+    if (command == "reference") {
+        return parse_reference(arguments());
     }
     if (command == "compare") {
         return parse_compare(arguments());

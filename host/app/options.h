@@ -9,6 +9,7 @@
 
 #include "core/metrics.h"
 #include "render/race.h"
+#include "render/reference.h"
 #include "render/settings.h"
 #include "vk/device.h"
 
@@ -43,6 +44,18 @@ struct RenderOptions {
     Device::Options device;
     bool quiet = false;
     bool verbose = false;
+};
+
+/// vkcppm reference SCENE ...
+struct ReferenceOptions {
+    SceneOptions scene;
+    ReferenceSettings settings;                 // ranges unchecked: make_reference does that
+    std::filesystem::path output;               // EXR
+    bool half = false;                          // half floats
+    std::optional<std::filesystem::path> stats; // JSON
+    Device::Options device;
+    bool quiet = false;
+    bool json = false;
 };
 
 /// vkcppm compare IMAGE REFERENCE
@@ -80,13 +93,16 @@ struct TextOptions {
     std::string text;
 };
 
-using Options = std::variant<RenderOptions, RaceOptions, CompareOptions, InfoOptions, DevicesOptions, TextOptions>;
+using Options = std::variant<RenderOptions, RaceOptions, ReferenceOptions, CompareOptions, InfoOptions, DevicesOptions,
+                             TextOptions>;
 
 /// Iterations where --time is given and --iterations is not: the largest number that Settings takes.
 inline constexpr std::uint32_t unbounded_iterations = 0x7fffffff;
+inline constexpr std::uint32_t unbounded_samples = 1u << 24;  // of ReferenceSettings, likewise
 
-/// Reads the command line; argv[0] is the program. The first word chooses the command where it is race, compare,
-/// info or devices, and is the scene otherwise. Throws Error(usage) with the option, its value and what it takes.
+/// Reads the command line; argv[0] is the program. The first word chooses the command where it is race, reference,
+/// compare, info or devices, and is the scene otherwise. Throws Error(usage) with the option, its value and what it
+/// takes.
 Options parse_options(int argc, const char* const* argv);
 
 }  // namespace vkcppm

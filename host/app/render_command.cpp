@@ -11,6 +11,7 @@
 #include "app/console.h"
 #include "app/interrupt.h"
 #include "app/load.h"
+#include "app/outputs.h"
 #include "app/progress.h"
 #include "app/record.h"
 #include "app/reference.h"
@@ -25,35 +26,6 @@
 namespace vkcppm {
 namespace fs = std::filesystem;
 namespace {
-
-/// Refuses, before any time is spent, outputs that cannot be written or would overwrite an input or one another.
-void check_outputs(const RenderOptions& options) {
-    std::vector<fs::path> taken{fs::weakly_canonical(options.scene.file)};
-    if (options.scene.environment) {
-        taken.push_back(fs::weakly_canonical(*options.scene.environment));
-    }
-    if (options.reference) {
-        taken.push_back(fs::weakly_canonical(*options.reference));
-    }
-    const auto check = [&](const char* option, const fs::path& file) {
-        const fs::path canonical = fs::weakly_canonical(file);
-        for (const fs::path& other : taken) {
-            if (canonical == other) {
-                throw Error(ExitCode::usage,
-                            fmt::format("{}: {} is an input or another output", option, file.string()));
-            }
-        }
-        taken.push_back(canonical);
-        check_writable(file);
-    };
-    check("-o", options.output);
-    if (options.png) {
-        check("--png", *options.png);
-    }
-    if (options.stats) {
-        check("--stats", *options.stats);
-    }
-}
 
 /// What the render is measured against; absent without a reference. The picture will have that size.
 std::optional<Measuring> read_measuring(const RenderOptions& options, const Extent& size) {
@@ -137,7 +109,8 @@ void print_table(const Report& report) {
 
 void execute(const RenderOptions& options) {
     catch_interrupts();
-    check_outputs(options);
+    check_outputs({options.scene.file, options.scene.environment, options.reference},
+                  {{"-o", options.output}, {"--png", options.png}, {"--stats", options.stats}});
     const Scene scene = load_scene(options.scene);
     print_warnings(scene.warnings);
     // Bad values and references are told before the device is asked for.

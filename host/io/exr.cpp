@@ -107,7 +107,7 @@ ExrChannels to_channels(const Image& image) {
     return channels;
 }
 
-void write_exr(const fs::path& file, const ExrChannels& channels, const ExrAttributes& attributes) {
+void write_exr(const fs::path& file, const ExrChannels& channels, const ExrAttributes& attributes, ExrDepth depth) {
     const auto [columns, rows] = channels.extent;
     // In memory first: OpenEXR's own file stream does not notice when the last bytes fail to reach the disk.
     Imf::StdOSStream stream;
@@ -119,11 +119,17 @@ void write_exr(const fs::path& file, const ExrChannels& channels, const ExrAttri
             header.insert(name, Imf::StringAttribute(text));
         }
         Imf::FrameBuffer frame;
+        std::vector<std::vector<Imath::half>> halves;  // as they are written
         for (const auto& [name, values] : channels.values) {
             assert(values.size() == channels.extent.pixels());
-            header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-            frame.insert(name, Imf::Slice::Make(Imf::FLOAT, values.data(), header.dataWindow(), sizeof(float),
-                                                sizeof(float) * columns));
+            if (depth == ExrDepth::half) {
+                halves.emplace_back(values.begin(), values.end());
+            }
+            const Imf::PixelType type = depth == ExrDepth::half ? Imf::HALF : Imf::FLOAT;
+            const std::size_t stride = depth == ExrDepth::half ? sizeof(Imath::half) : sizeof(float);
+            const void* data = depth == ExrDepth::half ? static_cast<const void*>(halves.back().data()) : values.data();
+            header.channels().insert(name, Imf::Channel(type));
+            frame.insert(name, Imf::Slice::Make(type, data, header.dataWindow(), stride, stride * columns));
         }
         Imf::OutputFile output(stream, header, no_worker_threads);
         output.setFrameBuffer(frame);

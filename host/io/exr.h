@@ -23,9 +23,13 @@ using ExrAttributes = std::vector<std::pair<std::string, std::string>>;
 /// The channels R, G and B of `image`.
 ExrChannels to_channels(const Image& image);
 
-/// Writes 32-bit float scan lines with ZIP compression and the chromaticities of Rec. 709. The same arguments give the
-/// same bytes. The file is written whole or not at all (write_file). Throws Error(cannot_write).
-void write_exr(const std::filesystem::path& file, const ExrChannels& channels, const ExrAttributes& attributes = {});
+/// How a number is stored: as it is, or rounded to the nearest half float, 11 bits of at most 65,504.
+enum class ExrDepth { full, half };
+
+/// Writes scan lines with ZIP compression and the chromaticities of Rec. 709. The same arguments give the same bytes. The
+/// file is written whole or not at all (write_file). Throws Error(cannot_write).
+void write_exr(const std::filesystem::path& file, const ExrChannels& channels, const ExrAttributes& attributes = {},
+               ExrDepth depth = ExrDepth::full);
 void write_exr(const std::filesystem::path& file, const Image& image, const ExrAttributes& attributes = {});
 
 /// Reads R, G and B, float or half, scan lines or tiles. The picture is the display window; what the data window does

@@ -109,6 +109,7 @@ std::vector<Feature> features_of(const Settings& settings) {
     if (settings.aovs) features.push_back({FEATURE_AOVS, "further channels", "--aovs"});
     if (settings.aperture > 0.0)
         features.push_back({FEATURE_LENS, "depth of field", fmt::format("--aperture {:g}", settings.aperture)});
+    if (settings.caustics) features.push_back({FEATURE_SPLIT, "caustics alone", "a reference"});
     return features;
 }
 

@@ -66,7 +66,7 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     params_.scene_area = float(std::max(scene.area, 1e-12));
     const double mean_disc = double(settings.knn) * params_.scene_area / double(settings.photons);
     params_.radius_floor = std::min(params_.radius_cap, float(std::sqrt(mean_disc / std::numbers::pi)));
-    params_.footprint_cap = float(footprint_cap);
+    params_.footprint_cap = float(settings.caustics.value_or(footprint_cap));
     params_.alpha = float(settings.alpha);
     params_.k = float(settings.k);
     params_.beta = float(settings.beta);
@@ -143,6 +143,7 @@ void Integrator::compile(const Settings& settings, const Bvh& bvh, std::uint32_t
     };
     for (const KernelModule& module : kernel_modules()) {
         const std::string name(module.name);
+        if (name == "path") continue;  // the path tracer's
         kernels_.emplace(name, Kernel(device_, bindings_, name, module.spirv, specialization));
         passes_.push_back({name, 0, 0.0});
     }

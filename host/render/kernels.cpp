@@ -54,6 +54,9 @@ constexpr std::uint32_t advance_words[] = {
 constexpr std::uint32_t resolve_words[] = {
 #include "resolve.spv.inc"
 };
+constexpr std::uint32_t path_words[] = {
+#include "path.spv.inc"
+};
 
 constexpr std::array modules = {
     KernelModule{"eye", eye_words},
@@ -72,6 +75,7 @@ constexpr std::array modules = {
     KernelModule{"update", update_words},
     KernelModule{"advance", advance_words},
     KernelModule{"resolve", resolve_words},
+    KernelModule{"path", path_words},
 };
 
 }  // namespace

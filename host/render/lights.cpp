@@ -320,6 +320,7 @@ void add_lights(const Scene& scene, FlatScene& flat) {
     std::vector<double> weights;
     for (const WeighedLight& light : lights) weights.push_back(light.weight);
     const AliasTable table(weights);
+    flat.light_power = table.total;
     for (std::size_t i = 0; i < lights.size(); ++i) {
         gpu::Light light = lights[i].light;
         light.power = glm::vec3(glm::dvec3(light.power) * (table.total / lights[i].weight));  // flux / probability

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "core/image.h"
@@ -20,10 +21,10 @@ class Device;
 
 struct ReferenceSettings {
     /// size, camera, lens, seed, max_depth; photons: light paths an iteration of caustics; iterations: of caustics, at
-    /// most; seconds: wall time after which neither half goes on, without it both run to their bounds. The other fields
-    /// are not looked at.
+    /// most, 32..2^31-1, in fours; seconds: wall time after which neither half goes on once it knows its error, without
+    /// it both run to their bounds. The other fields are not looked at.
     Settings render;
-    std::uint32_t samples = 4096;  // paths a pixel, at most; 32..2^24, a multiple of 16
+    std::uint32_t samples = 1024;  // paths a pixel, at most; 128..2^24, in sixteens
     double trust = 0.05;           // largest relative standard error of a pixel that is trusted, > 0
 };
 
@@ -44,6 +45,7 @@ struct Reference {
     double error_99 = 0.0;         // its 99th percentile
     std::size_t untrusted = 0;     // pixels
     Report report;
+    std::vector<std::string> warnings;  // what went wrong on the way, one line each
 };
 
 struct ReferenceProgress {

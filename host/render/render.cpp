@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <chrono>
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
+#include "core/process.h"
 #include "render/flatten.h"
 #include "render/integrator.h"
 #include "vk/device.h"
@@ -17,21 +16,10 @@ namespace {
 constexpr double submission_seconds = 0.1;  // a submission aims at this: progress stays lively, a watchdog quiet
 constexpr std::uint32_t max_batch = 32;     // iterations in one submission
 
-double now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-double cpu_now() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
-    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
 /// Wall and CPU seconds since it was made, without those that were spent in off_the_clock().
 class Stopwatch {
 public:
-    double wall() const { return now() - wall_start_; }
+    double wall() const { return wall_now() - wall_start_; }
     double cpu() const { return cpu_now() - cpu_start_; }
 
     template <typename Work> void off_the_clock(Work&& work) {
@@ -42,15 +30,9 @@ public:
     }
 
 private:
-    double wall_start_ = now();
+    double wall_start_ = wall_now();
     double cpu_start_ = cpu_now();
 };
-
-std::uint64_t peak_memory() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return std::uint64_t(usage.ru_maxrss) * 1024;
-}
 
 /// True where the error after `done` iterations is wanted.
 bool is_measured(const Measuring* measuring, std::uint32_t done) {
@@ -78,14 +60,14 @@ CurvePoint measure(Integrator& integrator, const Image& reference) {
 Rendering render(const Scene& scene, const Settings& wanted, Device& device, const KeepGoing& keep_going,
                  const Measuring* measuring) {
     Rendering result;
-    const double setup = now();
+    const double setup = wall_now();
     result.settings = resolve_settings(wanted, scene);
     const Settings& settings = result.settings;
     const FlatScene flat = flatten(scene);
     std::size_t camera = 0;
     std::from_chars(settings.camera.data(), settings.camera.data() + settings.camera.size(), camera);
     Integrator integrator(device, flat, scene.cameras.at(camera), settings);
-    result.report.setup_seconds = now() - setup;
+    result.report.setup_seconds = wall_now() - setup;
 
     Stopwatch watch;
     CurvePoint latest;

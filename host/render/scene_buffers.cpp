@@ -54,6 +54,7 @@ gpu::Params scene_params(const Device& device, const FlatScene& scene, const Cam
     params.max_depth = settings.max_depth;
     params.light_count = std::uint32_t(scene.lights.size());
     params.punctual_lights = scene.punctual_lights;
+    params.light_power = float(scene.light_power);
     params.environment = {scene.environment_size.width, scene.environment_size.height};
     params.lens_radius = float(0.5 * settings.aperture * scene.frame.scale);
     params.focus_distance = float(settings.focus_distance.value_or(1.0) * scene.frame.scale);

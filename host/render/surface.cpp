@@ -71,6 +71,9 @@ SurfaceTraits traits_of(const Material& m, float least_alpha) {
     t.rough = m.roughness > 0.0f;
     t.clearcoat = m.clearcoat > 0.0f;
     t.rough_clearcoat = t.clearcoat && m.clearcoat_roughness > 0.0f;
+    const bool reaches_zero = m.roughness == 0.0f || m.metallic_roughness_texture;
+    t.smooth = ((t.metal || t.coat || t.glass) && reaches_zero) || (t.glass && m.ior == 1.0f) ||
+               (t.clearcoat && (m.clearcoat_roughness == 0.0f || m.clearcoat_roughness_texture));
     t.normal_map = m.normal_texture || (t.clearcoat && m.clearcoat_normal_texture);
     return t;
 }

@@ -20,6 +20,7 @@ struct SurfaceTraits {
     bool absorbs = false;  //   with absorption in its volume
     bool disperses = false;
     bool rough = false;  // a lobe of reflection or transmission of roughness above 0
+    bool smooth = false;  // a delta lobe of reflection or transmission
     bool clearcoat = false;
     bool rough_clearcoat = false;
     bool alpha = false;  // is partly not there

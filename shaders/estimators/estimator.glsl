@@ -4,7 +4,7 @@
 //   update(pixel, diffuse, found, state): after an iteration in which `found` photons were accepted within R
 //   (`diffuse`: the pixel saw a surface to gather on); decides state.radius2 for the next one;
 //   clear_statistics(pixel): forgets what was recorded, when a radius begins;
-// and appm alone: kernel_weight (pi R^2 times its kernel) and search_radius2.
+// and appm alone: kernel_weight (pi R^2 times its kernel), which references have one of too, and search_radius2.
 // All share the accumulator acc += Phi / (pi R^2) of the update kernel; only the rule of the radius differs.
 
 struct Accepted {
@@ -73,7 +73,11 @@ void flush(uint pixel) {
     }
 }
 
-float kernel_weight(float q) { return ESTIMATOR == ESTIMATOR_APPM ? appm_kernel_weight(q) : 1.0; }
+float kernel_weight(float q) {
+    // Twice the estimate of a disc of half the area less that of the whole: the bias in R^2 cancels (Richardson 1911).
+    if ((FEATURES & FEATURE_SPLIT) != 0u) return q < 0.5 ? 3.0 : -1.0;
+    return ESTIMATOR == ESTIMATOR_APPM ? appm_kernel_weight(q) : 1.0;
+}
 
 float search_radius2(uint pixel, float radius2) {
     return ESTIMATOR == ESTIMATOR_APPM ? appm_search_radius2(pixel, radius2) : radius2;

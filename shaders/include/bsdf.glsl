@@ -301,6 +301,37 @@ float followed_weight(float density, float cosine) {
     return density == DELTA ? 1.0 : density / (density + float(params.knn) * abs(cosine) / PI);
 }
 
+// The density, 1/sr, with which a lobe of width above 0 is chosen by choose_lobe in proportion to `lobes` and then gives
+// wi by sample_lobe. Less than a density in all where there are delta lobes.
+float scatter_density(Bsdf b, Surface surface, vec4 lobes, vec3 wo, vec3 wi) {
+    vec3 n = surface.normal;
+    float wo_n = dot(wo, n);
+    float wi_n = dot(wi, n);
+    bool reflects = dot(wi, surface.geometric) > 0.0;
+    float sum = lobes.x * max(0.0, wi_n) / PI;
+    if ((FEATURES & FEATURE_ROUGH) != 0u) {
+        if (b.alpha > 0.0 && reflects && wi_n > 0.0) {
+            sum += lobes.y * reflection_pdf(b.alpha, n, wo, normalize(wo + wi));
+        }
+        if ((FEATURES & FEATURE_CLEARCOAT) != 0u && b.clearcoat_alpha > 0.0 && reflects) {
+            vec3 c = surface.clearcoat_normal;
+            if (dot(wi, c) > 0.0) sum += lobes.w * reflection_pdf(b.clearcoat_alpha, c, wo, normalize(wo + wi));
+        }
+        if ((FEATURES & FEATURE_TRANSMISSION) != 0u && b.alpha > 0.0 && !reflects && wi_n < 0.0) {
+            if (b.thin) {
+                sum += lobes.z * reflection_pdf(b.alpha, n, wo, normalize(wo + wi - 2.0 * wi_n * n));
+            } else if (b.eta != 1.0) {
+                vec3 h = normalize(b.eta * wo + wi);
+                if (dot(h, n) < 0.0) h = -h;
+                float wo_h = dot(wo, h);
+                float wi_h = dot(wi, h);
+                if (wo_h > 0.0 && wi_h < 0.0) sum += lobes.z * refraction_pdf(b.alpha, n, wo_n, h, b.eta, wo_h, -wi_h);
+            }
+        }
+    }
+    return sum / (lobes.x + lobes.y + lobes.z + lobes.w);
+}
+
 // Which part of the lobes a sum is of.
 #define PART_ALL 0u       // photons bring all of this light
 #define PART_GATHERED 1u  // photons' share of light that eye paths find too

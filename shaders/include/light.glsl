@@ -69,16 +69,96 @@ vec3 emitted_share(Light light, vec2 b) {
     return share;
 }
 
-// The start of a light path: lights in proportion to their power (alias table, Walker 1974), then position and
+// A light in proportion to its power (alias table, Walker 1974), by the first two of four random words.
+Light choose_light(uvec4 bits, out uint index) {
+    uint low;
+    umulExtended(bits.x, params.light_count, index, low);
+    Light light = light_at(index);
+    if (unit_floats(bits).y >= light.keep) {
+        index = light.alias_entry;
+        light = light_at(index);
+    }
+    return light;
+}
+
+// About the density, per area, in which points of an emitter are drawn: exact but for what textures vary. emission:
+// without textures.
+float emitter_density(vec3 emission, bool double_sided) {
+    return (emission.r + emission.g + emission.b) * (PI / 3.0) * (double_sided ? 2.0 : 1.0) / params.light_power;
+}
+
+// The density, 1/sr, in which directions to the environment, the last of the lights, are drawn.
+float environment_density(vec3 away) {
+    vec3 radiance = environment_radiance(away);
+    float radius = uintBitsToFloat(texelFetch(lights, int(params.light_count - 1u) * LIGHT_TEXELS + 2).x);
+    return (radiance.r + radiance.g + radiance.b) * (PI / 3.0) * radius * radius / params.light_power;
+}
+
+// One sample of all light that arrives at a point.
+struct LightSample {
+    vec3 direction;   // unit, towards the light
+    float distance;
+    vec3 radiance;    // over the density of the sample; of punctual lights the irradiance across it over the probability
+    float density;    // about that of the direction, 1/sr, the same function as of what a path meets; 0: punctual
+    uint triangle;    // that the light is a part of; NO_TRIANGLE: none
+};
+
+// bits: four random words; v: two numbers in [0, 1). Lights in proportion to their power, then a point in proportion to
+// what is emitted there.
+LightSample sample_light(uvec4 bits, vec2 v, vec3 position) {
+    vec4 u = unit_floats(bits);
+    uint index;
+    Light light = choose_light(bits, index);
+    vec3 towards = light.position - position;
+    LightSample s = LightSample(vec3(0.0), 3.0e38, vec3(0.0), 0.0, NO_TRIANGLE);
+    if ((FEATURES & FEATURE_AREA_LIGHTS) != 0u && light.kind == LIGHT_TRIANGLE) {
+        vec2 b = sample_triangle(u.zw);
+        towards += b.x * light.e1 + b.y * light.e2;
+        s.distance = length(towards);
+        s.direction = towards / s.distance;
+        bool double_sided = light.double_sided != 0u;
+        float cosine = -dot(s.direction, normalize(cross(light.e1, light.e2)));
+        cosine = double_sided ? abs(cosine) : max(0.0, cosine);
+        s.triangle = texelFetch(lights, int(index) * LIGHT_TEXELS + 5).z;
+        SurfaceMaterial material = factors_of(texelFetch(shading, int(s.triangle)).w & ~SHADING_FLAT);
+        float inverse = cosine / (s.distance * s.distance);
+        s.radiance = light.power * (inverse / (double_sided ? 2.0 * PI : PI));
+        if ((FEATURES & FEATURE_TEXTURED_LIGHTS) != 0u && light.textured != 0u) s.radiance *= emitted_share(light, b);
+        if (cosine > 0.0) s.density = emitter_density(material.emission, double_sided) / inverse;
+    }
+    if ((FEATURES & (FEATURE_POINT_LIGHTS | FEATURE_SPOT_LIGHTS)) != 0u &&
+        (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT)) {
+        s.distance = length(towards);
+        s.direction = towards / s.distance;
+        s.radiance = light.power / (s.distance * s.distance);
+        if (light.kind == LIGHT_POINT) {
+            s.radiance /= 4.0 * PI;
+        } else {
+            float width = light.e2.x - light.e2.y;
+            float fall = clamp((-dot(s.direction, light.e1) - light.e2.y) / width, 0.0, 1.0);
+            s.radiance *= fall * fall / (2.0 * PI * (1.0 - light.e2.x + width / 3.0));
+        }
+    }
+    if ((FEATURES & FEATURE_DIRECTIONAL_LIGHTS) != 0u && light.kind == LIGHT_DIRECTIONAL) {
+        s.direction = -light.e1;
+        s.radiance = light.power / (PI * light.e2.x * light.e2.x);
+    }
+    if ((FEATURES & FEATURE_ENVIRONMENT) != 0u && light.kind == LIGHT_ENVIRONMENT) {
+        vec3 color = sample_environment(bits.z, u.w, v, s.direction);
+        s.radiance = light.power * color / (PI * light.e2.x * light.e2.x);
+        s.density = environment_density(s.direction);
+    }
+    return s;
+}
+
+// The start of a light path: lights in proportion to their power, then position and
 // direction in proportion to what the light emits there, so that every path carries the same power at its start (but
 // for what a texture varies within a triangle). bits: four random words; v: four numbers in [0, 1). Returns whether the
 // light is punctual: of no area, so that no eye path meets it.
 bool emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 power) {
     vec4 u = unit_floats(bits);
-    uint index, low;
-    umulExtended(bits.x, params.light_count, index, low);
-    Light light = light_at(index);
-    if (u.y >= light.keep) light = light_at(light.alias_entry);
+    uint index;
+    Light light = choose_light(bits, index);
     power = light.power;
     // One kind after the other, each only where the scene has it.
     if ((FEATURES & FEATURE_AREA_LIGHTS) != 0u && light.kind == LIGHT_TRIANGLE) {

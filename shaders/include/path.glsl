@@ -22,6 +22,12 @@ uint pass_boundary(uint memory, Bsdf bsdf, uint lobe, Surface surface) {
     return (memory & ((1u << PATH_MEDIUM_SHIFT) - 1u)) | medium << PATH_MEDIUM_SHIFT;
 }
 
+// The memory of an eye path after a lobe of that density (DELTA or not) was followed.
+uint leave_lobe(uint memory, float density) {
+    if (density != DELTA) return memory & ~(PATH_STRAIGHT | PATH_CAUSTIC);
+    return (memory & PATH_STRAIGHT) != 0u ? memory : memory | PATH_CAUSTIC;
+}
+
 // The index of refraction that the path meets. At its first dispersive surface it is given its wavelength.
 float index_for_path(SurfaceMaterial material, uint stream, uint path, inout uint memory, inout vec3 throughput) {
     if ((FEATURES & FEATURE_DISPERSION) == 0u || material.cauchy == 0.0) return material.ior;

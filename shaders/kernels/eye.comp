@@ -18,34 +18,19 @@
 #include "include/environment.glsl"
 #include "include/light.glsl"
 #include "include/bounds.glsl"
+#include "include/camera.glsl"
 #include "include/hits.glsl"
 
 layout(binding = BIND_AOVS, scalar) buffer AovBlock { Aovs aovs[]; };
 
 #define FIRST_BOUNCE_DIMENSION 2u  // stratified dimensions 0 and 1 place the ray in the pixel
-#define LENS_DIMENSION 6u          // 6 and 7 place it on the lens
 #define LOBE_DIMENSIONS 4096u      // of random numbers, beyond those of bounces: where in a lobe
 
-void camera_ray(uint pixel, out vec3 origin, out vec3 direction, out float distance) {
-    vec2 jitter = vec2(stratified(params.seed, launch.iteration, pixel, 0u),
-                       stratified(params.seed, launch.iteration, pixel, 1u));
-    vec2 raster = vec2(pixel % params.width, pixel / params.width) + jitter;
-    vec2 film = 2.0 * raster / vec2(params.width, params.height) - 1.0;
-    vec3 through = params.forward + film.x * params.right - film.y * params.up;
-    vec3 eye = params.eye;
-    if ((FEATURES & FEATURE_LENS) != 0u) {
-        // A thin lens: what lies in the plane of focus is met by rays from all of it.
-        vec2 u = vec2(stratified(params.seed, launch.iteration, pixel, LENS_DIMENSION),
-                      stratified(params.seed, launch.iteration, pixel, LENS_DIMENSION + 1u));
-        vec2 lens = params.lens_radius * sample_disc(u);
-        vec3 offset = lens.x * normalize(params.right) + lens.y * normalize(params.up);
-        eye += offset;
-        through = through * params.focus_distance - offset;
-    }
-    direction = normalize(through);
-    origin = enter_bounds(eye, direction);
-    distance = length(origin - eye);
-}
+// Where light is split photons bring caustics alone, and of those an eye path finds what it meets by delta lobes after
+// it has followed a rough one.
+#define ASKS_FOR_LIGHTS (PUNCTUAL_ON_ROUGH && (FEATURES & FEATURE_SPLIT) == 0u)
+
+bool sees_light(uint memory) { return (FEATURES & FEATURE_SPLIT) == 0u || (memory & PATH_CAUSTIC) != 0u; }
 
 void main() {
     uint pixel = invocation();
@@ -58,7 +43,7 @@ void main() {
     uint memory = PATH_OUTSIDE | PATH_STRAIGHT;
     uint rays = 0u;
     if (launch.round == 0u) {
-        camera_ray(pixel, origin, direction, distance);
+        camera_ray(pixel, launch.iteration, origin, direction, distance);
     } else {
         if (hit_state(pixel) != HIT_UNFINISHED) return;
         origin = hit_position[pixel].position;
@@ -73,7 +58,7 @@ void main() {
     HitWeight weight = HitWeight(vec3(0.0), 0u);
     int steps = int(params.step_budget);
     while (true) {
-        bool shadow = PUNCTUAL_ON_ROUGH && (memory & PATH_SHADOW) != 0u;
+        bool shadow = ASKS_FOR_LIGHTS && (memory & PATH_SHADOW) != 0u;
         if ((memory & PATH_BOUNCES) >= (shadow ? PATH_BOUNCES : params.max_depth)) break;
         --steps;
         uint depth = memory & PATH_BOUNCES;
@@ -95,7 +80,9 @@ void main() {
             break;
         }
         if (found == TRACE_MISS) {
-            if ((FEATURES & FEATURE_ENVIRONMENT) != 0u) emission += throughput * environment_radiance(direction);
+            if ((FEATURES & FEATURE_ENVIRONMENT) != 0u && sees_light(memory)) {
+                emission += throughput * environment_radiance(direction);
+            }
             break;
         }
         distance += shadow ? -hit.t : hit.t;
@@ -119,10 +106,12 @@ void main() {
         }
         if ((FEATURES & FEATURE_UNLIT) != 0u && has(material, SURFACE_UNLIT)) {
             // What emits no photons must not be seen by rough lobes: photons would have to bring their share of it.
-            if ((memory & PATH_STRAIGHT) != 0u) emission += throughput * material.color;
+            if ((memory & PATH_STRAIGHT) != 0u && sees_light(memory)) emission += throughput * material.color;
             break;
         }
-        if (surface.front || has(material, SURFACE_DOUBLE_SIDED)) emission += throughput * material.emission;
+        if ((surface.front || has(material, SURFACE_DOUBLE_SIDED)) && sees_light(memory)) {
+            emission += throughput * material.emission;
+        }
         float ior = index_for_path(material, STREAM_EYE, pixel, memory, throughput);
         Bsdf bsdf = bsdf_of(material, ior, surface.front);
 
@@ -140,7 +129,7 @@ void main() {
         float inverse_probability;
         uint lobe = choose_lobe(lobes, choice, inverse_probability);
         if (lobe == LOBE_NONE) break;
-        if (PUNCTUAL_ON_ROUGH && lobe != LOBE_DIFFUSE && rough[lobe - 1u] > 0.0) {
+        if (ASKS_FOR_LIGHTS && lobe != LOBE_DIFFUSE && rough[lobe - 1u] > 0.0) {
             // One half of what would follow rough lobes asks for a light instead.
             if (u.w < 0.5) {
                 vec3 towards;
@@ -179,7 +168,7 @@ void main() {
         if ((FEATURES & FEATURE_ROUGH) != 0u) {
             vec3 n = lobe == LOBE_CLEARCOAT ? surface.clearcoat_normal : surface.normal;
             throughput *= followed_weight(density, dot(direction, n));
-            if (density != DELTA) memory &= ~PATH_STRAIGHT;
+            memory = leave_lobe(memory, density);
         }
         if (all(lessThanEqual(throughput, vec3(0.0)))) break;
         memory = pass_boundary(memory, bsdf, lobe, surface);

@@ -47,8 +47,14 @@ void main() {
         if (first) {
             cap = min(params.radius_cap,
                       max(params.radius_floor, params.footprint_cap * hit_emission[pixel].footprint));
+            if ((FEATURES & FEATURE_SPLIT) != 0u) {
+                // A reference does not let its photons choose their discs.
+                cap = params.footprint_cap * hit_emission[pixel].footprint;
+                pixels[pixel].seeded = 1u;
+            }
             pixels[pixel].radius2 = cap * cap;
         }
+        if ((FEATURES & FEATURE_SPLIT) != 0u) return;
         // A pixel that failed before will hardly find k photons nearby: it looks through its whole disc at once.
         kept = Gathered(vec3(-1.0, 0.0, first ? min(cap, 1.5 * grid.cell) : cap), 0u);
     } else {

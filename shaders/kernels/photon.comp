@@ -94,7 +94,9 @@ void main() {
             if ((FEATURES & FEATURE_UNLIT) != 0u && has(material, SURFACE_UNLIT)) bsdf = black();
             // What is black reflects no photon to any eye. Where a surface is partly there the photon counts in full: it
             // tells how much light arrives, and the eye path has asked for the surface.
-            if (gathers_light(bsdf)) {
+            // Where light is split, that of all but caustics is left to paths.
+            bool counts = (FEATURES & FEATURE_SPLIT) == 0u || (state.memory & PATH_CAUSTIC) != 0u;
+            if (counts && gathers_light(bsdf)) {
                 if (state.stored < params.photon_capacity) {
                     photons[slot + state.stored] = Photon(surface.position, pack_direction(surface.geometric));
                     vec3 power = state.power;
@@ -121,6 +123,10 @@ void main() {
                 float density;
                 vec3 weight = sample_lobe(lobe, bsdf, surface, u.xy, false, state.direction, density);
                 state.power *= weight * inverse_probability;
+                if ((FEATURES & FEATURE_SPLIT) != 0u) {
+                    if (density == DELTA) state.memory |= PATH_CAUSTIC;
+                    alive = alive && (state.memory & PATH_CAUSTIC) != 0u;
+                }
                 state.memory &= ~PATH_DIRECT;
                 if (density != DELTA) state.memory &= ~PATH_STRAIGHT;
                 if ((FEATURES & FEATURE_SMOOTH) != 0u && density != DELTA) {

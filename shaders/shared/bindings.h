@@ -31,7 +31,7 @@
 #define BIND_FILM 22
 #define BIND_PHOTONS 23        // [lanes x capacity] Photon, as traced
 #define BIND_PHOTON_FLUX 24
-#define BIND_PATHS 25          // [lanes] PathState
+#define BIND_PATHS 25          // [lanes] PathState; of the path tracer: [P] TraceState
 #define BIND_SORTED 26         // [N] Photon in cell order
 #define BIND_SORTED_FLUX 27
 #define BIND_PAIRS_A 28        // [N] (cell, slot)

@@ -56,6 +56,8 @@ using uint = std::uint32_t;
 #define FEATURE_SPOT_LIGHTS 0x200000u
 #define FEATURE_DIRECTIONAL_LIGHTS 0x400000u
 #define FEATURE_ENVIRONMENT 0x800000u
+#define FEATURE_SPLIT 0x1000000u       // light is split in two: photons bring caustics, paths all but them; a caustic leaves
+                                       // its light by way of one or more delta lobes before it meets any other lobe
 #define FEATURE_PUNCTUAL_LIGHTS (FEATURE_POINT_LIGHTS | FEATURE_SPOT_LIGHTS | FEATURE_DIRECTIONAL_LIGHTS)
 
 #define MAX_RINGS 4
@@ -235,8 +237,10 @@ struct HitSurface {
 #define PATH_DIRECT 0x2000u     // a photon that has met nothing yet since it left a punctual light
 #define PATH_SHADOW 0x2000u     // an eye path whose last ray asks whether a punctual light is seen
 #define PATH_SEEN 0x4000u       // an eye path that has met a surface that is there
-#define PATH_MEDIUM_SHIFT 15u
-#define PATH_NO_MEDIUM 0x1ffffu // also the largest number of materials
+#define PATH_CAUSTIC 0x8000u    // a photon that left its light by way of a delta lobe; an eye path whose last lobe was a
+                                // delta and one before was not
+#define PATH_MEDIUM_SHIFT 16u
+#define PATH_NO_MEDIUM 0xffffu  // also the largest number of materials
 
 // Sum of one pass of the gather over a pixel's disc.
 struct Gathered {
@@ -283,6 +287,27 @@ struct PathState {
     float power0;      // largest channel of the power at emission, for Russian roulette
 };
 
+// A path of the path tracer in flight at the end of a round, one a pixel: the next ray of the path, and before it the
+// ray to a light, where one is asked for.
+struct TraceState {
+    vec3 origin;
+    uint memory;           // bounces | PATH_*
+    vec3 direction;
+    float density;         // 1/sr, with which the direction was drawn; DELTA after the camera and delta lobes
+    vec3 throughput;
+    float distance;        // since the last vertex
+    vec3 radiance;         // of this path so far
+    uint done;             // paths of this launch
+    vec3 sum;              //   and their radiance
+    uint ended;            // 1: the path ends with the ray to the light
+    vec3 light_origin;
+    float light_distance;  // left to the light; 0: no ray to a light
+    vec3 light_direction;
+    uint light_triangle;   // what the ray may meet; NO_TRIANGLE: a light of no area
+    vec3 light;            // what the light adds where nothing is in between
+};
+#define NO_TRIANGLE 0xffffffffu
+
 // Where a resumable walk over the grid goes on.
 struct Cursor {
     uvec3 cell;        // first cell of the segment; x: CURSOR_START or CURSOR_DONE
@@ -305,6 +330,7 @@ struct Grid {
 #define PASS_PHOTON 2u
 #define PASS_KNN 4u
 #define PASS_GATHER 8u
+#define PASS_TRACE 32u     // of the path tracer
 #define PASS_CAPACITY 16u  // a lane stored more photons than it has slots
 
 #define RADIUS_BINS 64     // histogram of log2 R: bin = 2 * (log2 R + 24), clamped
@@ -340,6 +366,7 @@ struct Params {
     uint max_depth;
     uint light_count;
     uint punctual_lights;  // the first so many of them
+    float light_power;     // of all lights, mean channel, W (frame-scaled): what the alias table is in proportion to
     uvec2 environment;     // its columns and rows
     float lens_radius;     // frame units; at focus_distance along the axis a point is sharp
     float focus_distance;
@@ -367,7 +394,7 @@ struct Launch {
     uint round;        // of a resumable pass
     uint last_round;   // 1: unfinished work blocks the passes that follow
     uint offset;       // scan: first element; radix: shift of the digit; update: 1 counts the radii
-    uint count;        // scan: elements; radix: 0 reads pairs[0], 1 reads pairs[1]
+    uint count;        // scan: elements; path: paths a pixel; radix: 0 reads pairs[0], 1 reads pairs[1]
 };
 
 #ifdef __cplusplus

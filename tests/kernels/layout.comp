@@ -65,6 +65,7 @@ BLOCK(BIND_FIRST_STORAGE + 18, ParamsArrayBlock, Params, params_array)
 BLOCK(BIND_FIRST_STORAGE + 19, LaunchArrayBlock, Launch, launches)
 BLOCK(BIND_FIRST_STORAGE + 20, TextureLookupBlock, TextureLookup, texture_lookups)
 BLOCK(BIND_FIRST_STORAGE + 21, HitSurfaceBlock, HitSurface, hit_surfaces)
+BLOCK(BIND_FIRST_STORAGE + 22, TraceStateBlock, TraceState, trace_states)
 
 void main() {
     if (gl_GlobalInvocationID.x != 0u) return;
@@ -90,6 +91,7 @@ void main() {
     ROUND_TRIP(Launch, launches, MEMBERS_LAUNCH)
     ROUND_TRIP(TextureLookup, texture_lookups, MEMBERS_TEXTURE_LOOKUP)
     ROUND_TRIP(HitSurface, hit_surfaces, MEMBERS_HIT_SURFACE)
+    ROUND_TRIP(TraceState, trace_states, MEMBERS_TRACE_STATE)
     BUMP(Params, params, params_array[4], MEMBERS_PARAMS)
     BUMP(Launch, launch, launches[4], MEMBERS_LAUNCH)
 }

@@ -1,0 +1,65 @@
+#include <cstdio>
+#include <string>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "app/commands.h"
+#include "app/console.h"
+#include "app/interrupt.h"
+#include "app/load.h"
+#include "app/outputs.h"
+#include "app/progress.h"
+#include "app/reference_record.h"
+#include "app/validation.h"
+#include "io/atomic_file.h"
+#include "io/exr.h"
+#include "render/reference.h"
+
+namespace vkcppm {
+namespace {
+
+Reference refine_with_progress(const Scene& scene, const ReferenceOptions& options, Device& device) {
+    ProgressLine line(stderr, ::isatty(STDERR_FILENO) == 1, options.settings.render.seconds);
+    return make_reference(scene, options.settings, device, [&](const ReferenceProgress& progress) {
+        if (!options.quiet) {
+            line.update(progress.wall_seconds,
+                        fmt::format("{}: {} paths a pixel, {} iterations of caustics, relMSE about {:.2g}",
+                                    duration_text(progress.wall_seconds), progress.samples, progress.iterations,
+                                    progress.relmse));
+        }
+        return !interrupted();
+    });
+}
+
+ExrChannels channels_of(const Reference& reference) {
+    ExrChannels channels = to_channels(reference.mean);
+    for (auto& [name, values] : to_channels(reference.standard_error).values) {
+        channels.values["StdErr." + name] = std::move(values);
+    }
+    channels.values["Trust"] = reference.trusted;
+    return channels;
+}
+
+}  // namespace
+
+void execute(const ReferenceOptions& options) {
+    catch_interrupts();
+    check_outputs({options.scene.file, options.scene.environment}, {{"-o", options.output}, {"--stats", options.stats}});
+    const Scene scene = load_scene(options.scene);
+    print_warnings(scene.warnings);
+    resolve_settings(options.settings.render, scene);  // a bad value is told before the device is asked for
+    Device device(options.device);
+    require_validation(options.device, device);
+    const Reference reference = refine_with_progress(scene, options, device);
+    print_warnings(reference.warnings);
+    write_exr(options.output, channels_of(reference), reference_attributes(options, scene, reference),
+              options.half ? ExrDepth::half : ExrDepth::full);
+    if (options.stats) {
+        write_file(*options.stats, reference_json(options, scene, reference, true));
+    }
+    print_result(options.json ? reference_json(options, scene, reference, false) : reference_summary(reference));
+    check_validation(device);
+}
+
+}  // namespace vkcppm

@@ -1,0 +1,96 @@
+#include "app/reference_record.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/record.h"
+
+namespace vkcppm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json reference_settings_json(const ReferenceSettings& settings) {
+    const Json render = settings_json(settings.render);
+    Json json;
+    for (const char* name : {"time", "photons", "iterations", "size", "camera", "aperture", "focus_distance", "seed", "max_depth"}) {
+        if (render.contains(name)) json[name] = render[name];
+    }
+    json["samples"] = settings.samples;
+    json["trust"] = settings.trust;
+    return json;
+}
+
+Json error_json(const Reference& reference) {
+    return {{"samples_done", reference.samples},
+            {"iterations_done", reference.iterations},
+            {"relmse", reference.relmse},
+            {"relmse_paths", reference.relmse_paths},
+            {"relmse_caustics", reference.relmse_caustics},
+            {"caustic_share", reference.caustic_share},
+            {"median_error", reference.median_error},
+            {"error_99", reference.error_99},
+            {"untrusted", reference.untrusted}};
+}
+
+}  // namespace
+
+ExrAttributes reference_attributes(const ReferenceOptions& options, const Scene& scene, const Reference& reference) {
+    Json json = reference_settings_json(reference.settings);
+    json.update(error_json(reference));
+    const Json where = scene_json(options.scene, scene);
+    json["scene"] = scene.file.filename().string();
+    json["scene_hash"] = where["hash"];
+    if (options.scene.environment) json["environment"] = options.scene.environment->filename().string();
+    json["thin_glass"] = where["thin_glass"];
+    json["device"] = reference.report.device;
+    json["driver"] = reference.report.driver;
+    json["version"] = version();
+    ExrAttributes attributes;
+    for (const auto& [name, value] : json.items()) {
+        attributes.emplace_back("vkcppm." + name, value.is_string() ? value.get<std::string>() : json_text(value));
+    }
+    return attributes;
+}
+
+std::string reference_json(const ReferenceOptions& options, const Scene& scene, const Reference& reference, bool stats) {
+    Json json;
+    json["version"] = version();
+    json["scene"] = scene_json(options.scene, scene);
+    json["settings"] = reference_settings_json(reference.settings);
+    json["error"] = error_json(reference);
+    if (stats) {
+        const Report& report = reference.report;
+        json["device"] = report.device;
+        json["driver"] = report.driver;
+        json["totals"] = {{"rays", report.rays},
+                          {"wall_seconds", report.wall_seconds},
+                          {"cpu_seconds", report.cpu_seconds},
+                          {"setup_seconds", report.setup_seconds},
+                          {"peak_memory_bytes", report.peak_memory_bytes},
+                          {"device_memory_bytes", report.device_memory_bytes}};
+        json["passes"] = Json::array();
+        for (const PassReport& pass : report.passes) {
+            json["passes"].push_back(
+                {{"name", pass.name}, {"calls", pass.calls}, {"device_seconds", pass.device_seconds}});
+        }
+    }
+    return json_text(json, 2) + "\n";
+}
+
+std::string reference_summary(const Reference& reference) {
+    const std::size_t pixels = reference.trusted.size();
+    const auto share = [](double part, double whole) { return whole > 0.0 ? 100.0 * part / whole : 0.0; };
+    std::string text = fmt::format("{} paths a pixel, {} iterations of caustics in {:.0f} s\n", reference.samples,
+                                   reference.iterations, reference.report.wall_seconds);
+    text += fmt::format("{:<40}{:.1f} %\n", "light by caustics", 100.0 * reference.caustic_share);
+    text += fmt::format("{:<40}{:.3g}, {:.0f} % of it from caustics\n", "expected relMSE (eps 0.01)", reference.relmse,
+                        share(reference.relmse_caustics, reference.relmse));
+    text += fmt::format("{:<40}{:.2g} median, {:.2g} at 99 %\n", "relative standard error of pixels",
+                        reference.median_error, reference.error_99);
+    text += fmt::format("{:<40}{} of {}, around which it is above {:g}\n", "pixels not trusted", reference.untrusted,
+                        pixels, reference.settings.trust);
+    return text;
+}
+
+}  // namespace vkcppm

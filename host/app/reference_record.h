@@ -1,0 +1,22 @@
+#pragma once
+// What a reference was, as text.
+
+#include <string>
+
+#include "app/options.h"
+#include "io/exr.h"
+#include "render/reference.h"
+#include "scene/scene.h"
+
+namespace vkcppm {
+
+/// The EXR's attributes, named "vkcppm.*": what makes it again, and its expected error.
+ExrAttributes reference_attributes(const ReferenceOptions& options, const Scene& scene, const Reference& reference);
+
+/// A JSON object: settings, error, and where there is room for them (`stats`) times of the passes.
+std::string reference_json(const ReferenceOptions& options, const Scene& scene, const Reference& reference, bool stats);
+
+/// The summary to read.
+std::string reference_summary(const Reference& reference);
+
+}  // namespace vkcppm

@@ -1,0 +1,196 @@
+#version 460
+// The path tracer: one invocation a pixel, launch.count paths of it one after the other, so that a SIMD group stays full.
+// Unbiased: every vertex with a lobe of width above 0 asks for one point of the lights, and what the next ray meets counts
+// too; both are weighed by the power heuristic (Veach 1997, section 9.2.4), punctual lights are asked for alone. A ray to a
+// light is stopped by glass. Where light is split (FEATURE_SPLIT) caustics are left out; else light of punctual lights
+// by way of delta lobes is missing, which no path finds.
+// Reads the scene and the lights; writes image [P], the mean of the launch's paths, and traces. O(paths x bounces x log
+// triangles). Fails by running out of steps: goes on next round.
+#include "include/kernel.glsl"
+#include "include/rng.glsl"
+#include "include/frame.glsl"
+#include "include/sampling.glsl"
+#include "include/scene.glsl"
+#include "include/texture.glsl"
+#include "include/traverse.glsl"
+#include "include/surface.glsl"
+#include "include/bsdf.glsl"
+#include "include/path.glsl"
+#include "include/environment.glsl"
+#include "include/light.glsl"
+#include "include/bounds.glsl"
+#include "include/camera.glsl"
+
+layout(binding = BIND_PATHS, scalar) buffer TraceBlock { TraceState traces[]; };
+layout(binding = BIND_IMAGE, scalar) writeonly buffer ImageBlock { vec3 image[]; };
+
+#define FIRST_ROULETTE 4u      // bounce from which Russian roulette decides whether a path goes on
+#define FIRST_DIMENSION 16u    // of random numbers, beyond the stratified ones; three a bounce
+
+bool finite(vec3 v) {
+    return all(notEqual(floatBitsToUint(v) & 0x7f800000u, uvec3(0x7f800000u)));
+}
+
+TraceState new_path(uint done, vec3 sum) {
+    return TraceState(vec3(0.0), PATH_OUTSIDE | PATH_STRAIGHT, vec3(0.0), DELTA, vec3(1.0), 0.0, vec3(0.0), done, sum, 0u,
+                      vec3(0.0), 0.0, vec3(0.0), NO_TRIANGLE, vec3(0.0));
+}
+
+float power_heuristic(float density, float other) {
+    return density * density / (density * density + other * other);
+}
+
+// The weight of light that a ray of the path meets, where it is drawn with `light_density` too.
+float met_weight(TraceState state, float light_density) {
+    if (state.density != DELTA) return power_heuristic(state.density, light_density);
+    return (FEATURES & FEATURE_SPLIT) != 0u && (state.memory & PATH_CAUSTIC) != 0u ? 0.0 : 1.0;
+}
+
+// What an emitter sends along the ray that met it, weighed.
+vec3 met_emission(TraceState state, Surface surface, SurfaceMaterial material) {
+    bool double_sided = has(material, SURFACE_DOUBLE_SIDED);
+    if (material.emission == vec3(0.0) || !(surface.front || double_sided)) return vec3(0.0);
+    // Without textures, as where the light is asked for.
+    vec3 factor = (FEATURES & FEATURE_TEXTURES) != 0u ? factors_of(surface.material).emission : material.emission;
+    float cosine = max(1e-12, -dot(state.direction, surface.geometric));
+    float light_density = emitter_density(factor, double_sided) * state.distance * state.distance / cosine;
+    return material.emission * met_weight(state, light_density);
+}
+
+// Asks for a point of the lights, weighed against meeting it.
+void ask_for_light(inout TraceState state, Bsdf bsdf, Surface surface, vec4 lobes, uvec4 bits, vec2 v) {
+    vec3 wo = -state.direction;
+    LightSample light = sample_light(bits, v, surface.position);
+    vec3 factor = light.radiance * rough_bsdf(bsdf, surface, wo, light.direction, PART_ALL);
+    factor *= abs(dot(light.direction, surface.normal));
+    if (light.density > 0.0) {
+        factor *= power_heuristic(light.density, scatter_density(bsdf, surface, lobes, wo, light.direction));
+    }
+    if ((FEATURES & FEATURE_VOLUME) != 0u) {
+        bool through = dot(light.direction, surface.geometric) < 0.0;
+        uint memory = pass_boundary(state.memory, bsdf, through ? LOBE_TRANSMISSION : LOBE_NONE, surface);
+        uint medium = memory >> PATH_MEDIUM_SHIFT;
+        if (medium != PATH_NO_MEDIUM) factor *= exp(-light.distance * absorption_of(medium));
+    }
+    if (!any(greaterThan(factor, vec3(0.0)))) return;
+    state.light = state.throughput * factor;
+    state.light_origin = leave(surface, light.direction);
+    state.light_direction = light.direction;
+    state.light_distance = light.distance;
+    state.light_triangle = light.triangle;
+}
+
+// Scatters the path: sets its direction, its density and its throughput; false where it ends.
+bool scatter(inout TraceState state, Bsdf bsdf, Surface surface, vec4 lobes, vec4 u) {
+    float inverse_probability;
+    uint lobe = choose_lobe(lobes, u.w, inverse_probability);
+    if (lobe == LOBE_NONE) return false;
+    vec3 wo = -state.direction;
+    vec3 weight = inverse_probability * sample_lobe(lobe, bsdf, surface, u.xy, true, state.direction, state.density);
+    if (state.density != DELTA && weight != vec3(0.0)) {
+        // The direction stands for all lobes that could have given it.
+        state.density = scatter_density(bsdf, surface, lobes, wo, state.direction);
+        weight = rough_bsdf(bsdf, surface, wo, state.direction, PART_ALL) *
+                 (abs(dot(state.direction, surface.normal)) / state.density);
+    }
+    state.throughput *= weight;
+    state.memory = pass_boundary(leave_lobe(state.memory, state.density), bsdf, lobe, surface);
+    return any(greaterThan(state.throughput, vec3(0.0)));
+}
+
+void main() {
+    uint pixel = invocation();
+    if (pixel >= pixel_count() || blocked(PASS_TRACE)) return;
+    TraceState state = new_path(0u, vec3(0.0));
+    if (launch.round > 0u) {
+        state = traces[pixel];
+        if (state.done >= launch.count) return;
+    }
+    uint rays = 0u;
+    int steps = int(params.step_budget);
+    while (state.done < launch.count) {
+        --steps;
+        if (steps < 0) {
+            block_after(PASS_TRACE);
+            break;
+        }
+        uint path = launch.iteration * launch.count + state.done;
+        bool shadow = state.light_distance > 0.0;
+        float from_eye;
+        if ((state.memory & PATH_BOUNCES) == 0u) camera_ray(pixel, path, state.origin, state.direction, from_eye);
+        vec3 origin = shadow ? state.light_origin : state.origin;
+        vec3 direction = shadow ? state.light_direction : state.direction;
+        bool fresh = steps + 1 == int(params.step_budget);
+        Hit hit;
+        uint found = trace(origin, direction, steps, hit);
+        if (found == TRACE_UNFINISHED) {
+            if (fresh) atomicAdd(status.stuck, 1u);
+            block_after(PASS_TRACE);
+            break;
+        }
+        ++rays;
+        if (shadow && (found == TRACE_MISS || hit.triangle == state.light_triangle || hit.t >= state.light_distance)) {
+            state.radiance += state.light;
+            state.light_distance = 0.0;
+        } else if (found == TRACE_MISS) {
+            if ((FEATURES & FEATURE_ENVIRONMENT) != 0u) {
+                vec3 met = environment_radiance(direction);
+                if (met != vec3(0.0)) met *= met_weight(state, environment_density(direction));
+                state.radiance += state.throughput * met;
+            }
+            state.ended = 1u;
+        } else {
+            Surface surface = surface_at(hit, direction);
+            SurfaceMaterial material = material_at(hit, direction, surface);
+            float coverage = (FEATURES & FEATURE_ALPHA) != 0u ? coverage_of(material) : 1.0;
+            if (shadow) {
+                state.light *= 1.0 - coverage;
+                state.light_origin = leave(surface, direction);
+                state.light_distance = coverage < 1.0 ? max(1e-30, state.light_distance - hit.t) : 0.0;
+            } else {
+                ++state.memory;
+                uint bounces = state.memory & PATH_BOUNCES;
+                state.distance += hit.t;
+                if ((FEATURES & FEATURE_VOLUME) != 0u) state.throughput *= transmittance(state.memory, surface, hit.t);
+                uint dimension = FIRST_DIMENSION + 3u * bounces;
+                uvec4 bits = random_words(params.seed, path, STREAM_PATH, pixel, dimension);
+                vec4 u = random4(params.seed, path, STREAM_PATH, pixel, dimension + 1u);
+                vec4 v = random4(params.seed, path, STREAM_PATH, pixel, dimension + 2u);
+                bool alive = true;
+                if ((FEATURES & FEATURE_ALPHA) != 0u && v.z >= coverage) {
+                    // It is not there.
+                } else if ((FEATURES & FEATURE_UNLIT) != 0u && has(material, SURFACE_UNLIT)) {
+                    if ((state.memory & PATH_STRAIGHT) != 0u) state.radiance += state.throughput * material.color;
+                    alive = false;
+                } else {
+                    state.radiance += state.throughput * met_emission(state, surface, material);
+                    float ior = index_for_path(material, STREAM_PATH, pixel + state.done * pixel_count(), state.memory,
+                                               state.throughput);
+                    Bsdf bsdf = bsdf_of(material, ior, surface.front);
+                    vec4 lobes = lobes_of(bsdf, surface, -direction);
+                    if (params.light_count > 0u && gathers_light(bsdf)) {
+                        ask_for_light(state, bsdf, surface, lobes, bits, v.xy);
+                    }
+                    alive = scatter(state, bsdf, surface, lobes, u);
+                    state.distance = 0.0;
+                }
+                alive = alive && bounces < params.max_depth;
+                if (alive && bounces >= FIRST_ROULETTE) {
+                    float survival = min(1.0, largest(state.throughput));
+                    alive = u.z < survival;
+                    state.throughput *= 1.0 / survival;
+                }
+                state.origin = leave(surface, state.direction);
+                state.ended = alive ? 0u : 1u;
+            }
+        }
+        if (state.ended != 0u && state.light_distance == 0.0) {
+            bool valid = finite(state.radiance);
+            if (!valid) atomicAdd(status.invalid, 1u);
+            state = new_path(state.done + 1u, state.sum + (valid ? state.radiance : vec3(0.0)));
+        }
+    }
+    traces[pixel] = state;
+    if (state.done == launch.count) image[pixel] = state.sum / float(launch.count);
+    atomicAdd(status.rays, rays);
+}
