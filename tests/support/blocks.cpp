@@ -77,21 +77,25 @@ TwoWays render_two_ways_extrapolated(const Scene& scene, Settings settings, std:
     return pictures;
 }
 
-BlockComparison compare_blocks(const TwoWays& pictures, const BlockSettings& settings) {
-    const Extent size = pictures.photons.front().extent;
+namespace {
+
+/// Mean of a channel over a block, and the variance of that mean.
+using BlockMoments = std::function<std::pair<double, double>(std::uint32_t x0, std::uint32_t y0, int channel)>;
+/// The p-value of a difference of means beyond `allowed`, given their variances.
+using BlockTest = std::function<double(double difference, double allowed, double v1, double v2)>;
+
+BlockComparison compare(Extent size, const BlockSettings& settings, const BlockMoments& photons,
+                        const BlockMoments& paths, const BlockTest& test) {
     const std::uint32_t columns = size.width / settings.side, rows = size.height / settings.side;
     const double each = sidak(settings.level, std::size_t(3) * columns * rows);
     BlockComparison result;
     for (std::uint32_t row = 0; row < rows; ++row) {
         for (std::uint32_t column = 0; column < columns; ++column) {
             for (int c = 0; c < 3; ++c) {
-                const auto [m1, v1] =
-                    moments(pictures.photons, column * settings.side, row * settings.side, settings.side, c);
-                const auto [m2, v2] =
-                    moments(pictures.paths, column * settings.side, row * settings.side, settings.side, c);
+                const auto [m1, v1] = photons(column * settings.side, row * settings.side, c);
+                const auto [m2, v2] = paths(column * settings.side, row * settings.side, c);
                 const bool counts = std::sqrt(v2) <= settings.noise * m2;
-                const bool differs =
-                    counts && p_value(m1 - m2, settings.bias * m2, v1, v2, double(pictures.paths.size())) < each;
+                const bool differs = counts && test(m1 - m2, settings.bias * m2, v1, v2) < each;
                 result.counted += counts ? 1 : 0;
                 result.differing += differs ? 1 : 0;
                 result.table += fmt::format(" {}{:.3f}({:.3f})",
@@ -104,6 +108,42 @@ BlockComparison compare_blocks(const TwoWays& pictures, const BlockSettings& set
         result.table += "\n";
     }
     return result;
+}
+
+}  // namespace
+
+BlockComparison compare_blocks(const TwoWays& pictures, const BlockSettings& settings) {
+    const auto of = [&](const Pictures& ones) {
+        return [&](std::uint32_t x0, std::uint32_t y0, int c) { return moments(ones, x0, y0, settings.side, c); };
+    };
+    const double n = double(pictures.paths.size());
+    return compare(pictures.photons.front().extent, settings, of(pictures.photons), of(pictures.paths),
+                   [n](double difference, double allowed, double v1, double v2) {
+                       return p_value(difference, allowed, v1, v2, n);
+                   });
+}
+
+BlockComparison compare_blocks(const reference::PathTracing& picture, const reference::PathTracing& paths,
+                               const BlockSettings& settings) {
+    const auto of = [&](const reference::PathTracing& one) {
+        return [&](std::uint32_t x0, std::uint32_t y0, int c) {
+            const double n = double(settings.side) * settings.side;
+            double mean = 0.0, variance = 0.0;
+            for (std::uint32_t y = y0; y < y0 + settings.side; ++y) {
+                for (std::uint32_t x = x0; x < x0 + settings.side; ++x) {
+                    const double error = one.standard_error.at(x, y)[c];
+                    mean += one.mean.at(x, y)[c] / n;
+                    variance += error * error / (n * n);
+                }
+            }
+            return std::pair(mean, variance);
+        };
+    };
+    return compare(picture.mean.extent, settings, of(picture), of(paths),
+                   [](double difference, double allowed, double v1, double v2) {
+                       const double beyond = std::abs(difference) - allowed;
+                       return beyond <= 0.0 ? 1.0 : std::erfc(beyond / std::sqrt(2.0 * (v1 + v2)));
+                   });
 }
 
 }  // namespace vkcppm::test

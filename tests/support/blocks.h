@@ -44,4 +44,8 @@ struct BlockComparison {
 
 BlockComparison compare_blocks(const TwoWays& pictures, const BlockSettings& settings);
 
+/// The same of two pictures that know their standard errors, from many samples: by the normal distribution.
+BlockComparison compare_blocks(const reference::PathTracing& picture, const reference::PathTracing& paths,
+                               const BlockSettings& settings);
+
 }  // namespace vkcppm::test
