@@ -28,7 +28,7 @@ struct Settings {
     std::uint32_t rings = 2;                // n_a
     std::uint32_t sectors = 6;              // n_s
     std::optional<double> caustics;         // caustics alone, for a reference (render/reference.h): the starting radius in
-                                            // footprints of the pixel
+                                            // footprints of the pixel, a quarter of it at a photon's first rough surface
     bool aovs = false;                      // also depth, albedo, normal and the state of every pixel
 };
 

@@ -92,7 +92,7 @@ void main() {
             }
             bool inside = squared < radius2;
             float q = squared * inverse_radius * inverse_radius;
-            sum.flux += inside ? power * kernel_weight(q) : vec3(0.0);
+            sum.flux += inside ? power * kernel_weight(q, (flux.y & 0x80000000u) != 0u) : vec3(0.0);
             sum.count += inside ? 1u : 0u;
             record(pixel, Accepted(vec2(dot(offset, tangent), dot(offset, bitangent)), q, power, walk.first), inside);
         }

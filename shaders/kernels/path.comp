@@ -168,6 +168,8 @@ void main() {
                                                state.throughput);
                     Bsdf bsdf = bsdf_of(material, ior, surface.front);
                     vec4 lobes = lobes_of(bsdf, surface, -direction);
+                    // Lamps seen by way of weak lobes must not be missed.
+                    if ((state.memory & PATH_STRAIGHT) != 0u) lobes = sqrt(lobes);
                     if (params.light_count > 0u && gathers_light(bsdf)) {
                         ask_for_light(state, bsdf, surface, lobes, bits, v.xy);
                     }

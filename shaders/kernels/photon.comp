@@ -103,6 +103,9 @@ void main() {
                     if (PUNCTUAL_ON_ROUGH && (state.memory & (PATH_STRAIGHT | PATH_DIRECT)) == PATH_STRAIGHT) {
                         power.r = uintBitsToFloat(floatBitsToUint(power.r) | 0x80000000u);
                     }
+                    if ((FEATURES & FEATURE_SPLIT) != 0u && (state.memory & PATH_SCATTERED) == 0u) {
+                        power.g = uintBitsToFloat(floatBitsToUint(power.g) | 0x80000000u);
+                    }
                     photon_flux[slot + state.stored] = PhotonFlux(power, pack_direction(-state.direction));
                 }
                 ++state.stored;
@@ -125,6 +128,7 @@ void main() {
                 state.power *= weight * inverse_probability;
                 if ((FEATURES & FEATURE_SPLIT) != 0u) {
                     if (density == DELTA) state.memory |= PATH_CAUSTIC;
+                    if (density != DELTA) state.memory |= PATH_SCATTERED;
                     alive = alive && (state.memory & PATH_CAUSTIC) != 0u;
                 }
                 state.memory &= ~PATH_DIRECT;

@@ -202,7 +202,8 @@ struct Photon {
 struct PhotonFlux {
     vec3 power;        // W (frame-scaled), not yet divided by the number of emitted paths; red with its sign bit set: the
                        // photon comes straight from a punctual light by way of mirrors and smooth glass alone, and
-                       // at least one: no eye path finds its light
+                       // at least one: no eye path finds its light. Green with its sign bit set, where light is split: its
+                       // first surface that is not smooth
     uint direction;    // unit, towards where it came from, octahedral snorm16x2
 };
 
@@ -236,6 +237,7 @@ struct HitSurface {
 #define PATH_DISPERSED 0x1000u  // its wavelength is drawn
 #define PATH_DIRECT 0x2000u     // a photon that has met nothing yet since it left a punctual light
 #define PATH_SHADOW 0x2000u     // an eye path whose last ray asks whether a punctual light is seen
+#define PATH_SCATTERED 0x4000u  // a photon that has met another lobe than a delta, where light is split
 #define PATH_SEEN 0x4000u       // an eye path that has met a surface that is there
 #define PATH_CAUSTIC 0x8000u    // a photon that left its light by way of a delta lobe; an eye path whose last lobe was a
                                 // delta and one before was not
