@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -52,6 +53,15 @@ reference::PathTracing trace_in_double(const Scene& scene, const Settings& setti
     return reference::path_trace(scene, reference);
 }
 
+Reference refer(const Scene& scene, const Settings& settings, std::uint32_t iterations, std::uint32_t photons) {
+    ReferenceSettings wanted;
+    wanted.render = settings;
+    wanted.render.iterations = iterations;
+    wanted.render.photons = photons;
+    wanted.samples = 128;
+    return make_reference(scene, wanted, plain_device(), [](const ReferenceProgress&) { return true; });
+}
+
 class PathTracerRooms : public testing::TestWithParam<Case> {};
 
 TEST_P(PathTracerRooms, AgreeWithDoublePrecision) {
@@ -67,13 +77,7 @@ TEST_P(PathTracerRooms, AgreeWithDoublePrecision) {
     // Textures may be smooth somewhere, but hardly are.
     const auto smooth = [](const SurfaceTraits& t) { return t.smooth && !t.textured; };
     if (!std::ranges::any_of(traits_of(scene), smooth)) return;
-    ReferenceSettings split;
-    split.render = settings;
-    split.render.iterations = 64;
-    split.render.photons = 4096;
-    split.samples = samples;
-    const Reference reference =
-        make_reference(scene, split, plain_device(), [](const ReferenceProgress&) { return true; });
+    const Reference reference = refer(scene, settings, 64, 4096);
     const BlockComparison sum =
         compare_blocks({reference.mean, reference.standard_error}, paths, {.side = 8, .level = 1e-4, .bias = 0.004});
     EXPECT_EQ(sum.differing, 0u) << "reference over paths, a block and channel:\n" << sum.table;
@@ -83,41 +87,146 @@ TEST_P(PathTracerRooms, AgreeWithDoublePrecision) {
 INSTANTIATE_TEST_SUITE_P(Features, PathTracerRooms, testing::ValuesIn(material_cases()),
                          [](const auto& info) { return std::string(info.param.name); });
 
-class PathTracerClosedForm : public testing::TestWithParam<const char*> {};
-
-/// The scenes with a closed form whose light paths find: regions as ClosedForm of closed_form_test.cpp takes them.
-TEST_P(PathTracerClosedForm, MeanRadianceOfEveryRegion) {
-    const std::filesystem::path folder = std::filesystem::path(VKCPPM_SOURCE_DIR) / "scenes";
-    std::ifstream file(folder / (std::string(GetParam()) + ".expect.json"));
+/// Regions of <name>.expect.json, as closed_form_test.cpp takes them: 5 standard errors are allowed, and `bias`, relative.
+void expect_regions(const std::string& name, const std::function<reference::PathTracing(const Settings&)>& render,
+                    double bias) {
+    std::ifstream file(std::filesystem::path(VKCPPM_SOURCE_DIR) / "scenes" / (name + ".expect.json"));
     const nlohmann::json expected = nlohmann::json::parse(file);
     Settings settings;
     settings.size = Extent{expected["size"][0], expected["size"][1]};
-    const reference::PathTracing paths = trace_on_device(project_scene(GetParam()), settings);
+    const reference::PathTracing picture = render(settings);
     for (const auto& region : expected["regions"]) {
         glm::dvec3 sum(0.0), variance(0.0);
         double count = 0.0;
         for (std::uint32_t y = region["y"][0]; y < region["y"][1]; ++y) {
             for (std::uint32_t x = region["x"][0]; x < region["x"][1]; ++x, ++count) {
-                const glm::dvec3 error(paths.standard_error.at(x, y));
-                sum += glm::dvec3(paths.mean.at(x, y));
+                const glm::dvec3 error(picture.standard_error.at(x, y));
+                sum += glm::dvec3(picture.mean.at(x, y));
                 variance += error * error;
             }
         }
         for (int channel = 0; channel < 3; ++channel) {
             const double want = region["rgb"][channel], got = sum[channel] / count;
             const double error = std::sqrt(variance[channel]) / count;
-            // 5 standard errors, and the rounding of float arithmetic.
-            EXPECT_NEAR(got, want, 5.0 * error + 2e-5 * want)
+            EXPECT_NEAR(got, want, 5.0 * error + bias * want)
                 << region["name"] << " channel " << channel << ": ratio " << got / want << ", standard error "
                 << error / want << "; " << expected["formula"];
         }
     }
 }
 
+class PathTracerClosedForm : public testing::TestWithParam<const char*> {};
+
+/// The scenes with a closed form whose light paths find; the bias is the rounding of float arithmetic.
+TEST_P(PathTracerClosedForm, MeanRadianceOfEveryRegion) {
+    const Scene scene = project_scene(GetParam());
+    expect_regions(GetParam(), [&](const Settings& settings) { return trace_on_device(scene, settings); }, 2e-5);
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, PathTracerClosedForm,
                          testing::Values("coloured_slab", "directional_plane", "furnace", "mirror", "point_plane",
                                          "rough_metal", "slab", "spot_plane", "square_light"),
                          [](const auto& info) { return std::string(info.param); });
+
+class ReferenceClosedForm : public testing::TestWithParam<const char*> {};
+
+/// Those whose light paths do not find; the bias is that of discs of a few pixels.
+TEST_P(ReferenceClosedForm, MeanRadianceOfEveryRegion) {
+    const Scene scene = project_scene(GetParam());
+    const auto render = [&](const Settings& settings) {
+        const Reference reference = refer(scene, settings, 64, 16384);
+        EXPECT_GT(reference.caustic_share, 0.1);
+        return reference::PathTracing{reference.mean, reference.standard_error};
+    };
+    expect_regions(GetParam(), render, 0.001);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, ReferenceClosedForm, testing::Values("coloured_slab_floor", "focus", "slab_floor"),
+                         [](const auto& info) { return std::string(info.param); });
+
+/// The room with a ball of glass.
+Scene glass_room(Settings& settings) {
+    Scene scene = make_room();
+    const auto& cases = material_cases();
+    std::ranges::find_if(cases, [](const Case& c) { return std::string(c.name) == "glass"; })->change(scene, settings);
+    settings.size = Extent{16, 12};
+    return scene;
+}
+
+TEST(Reference, ErrorIsTheSpreadOfSeeds) {
+    Settings settings;
+    const Scene scene = glass_room(settings);
+    constexpr std::uint32_t seeds = 10;
+    Moments moments(*settings.size);
+    std::vector<double> stated(settings.size->pixels(), 0.0);  // squared standard error, mean over seeds and channels
+    double relmse = 0.0;
+    for (settings.seed = 1; settings.seed <= seeds; ++settings.seed) {
+        const Reference reference = refer(scene, settings, 32, 4096);
+        moments.add(reference.mean);
+        for (std::size_t i = 0; i < stated.size(); ++i) {
+            const glm::dvec3 error(reference.standard_error.rgb[i]);
+            stated[i] += glm::dot(error, error) / (3.0 * seeds);
+        }
+        relmse += reference.relmse / seeds;
+    }
+    double spread_sum = 0.0, stated_sum = 0.0, relative_spread = 0.0;
+    for (std::size_t i = 0; i < stated.size(); ++i) {
+        const glm::dvec3 spread = moments.squared_error(i) * double(seeds);  // variance of one picture
+        const double weight = 1.0 / (glm::dot(moments.mean()[i], moments.mean()[i]) / 3.0 + 0.01);
+        spread_sum += (spread.x + spread.y + spread.z) / 3.0 * weight;
+        stated_sum += stated[i] * weight;
+        relative_spread += glm::dot(spread, 1.0 / (moments.mean()[i] * moments.mean()[i] + 0.01)) / 3.0;
+    }
+    // 192 pixels with 9 degrees of freedom each; what is stated may be too much, as pixels are sampled evenly.
+    const double ratio = spread_sum / stated_sum;
+    EXPECT_GT(ratio, 0.7);
+    EXPECT_LT(ratio, 1.2);
+    EXPECT_NEAR(relative_spread / double(stated.size()) / relmse, 0.95, 0.25);
+}
+
+TEST(Reference, SameSettingsSameBits) {
+    Settings settings;
+    const Scene scene = glass_room(settings);
+    const Reference one = refer(scene, settings, 32, 4096), other = refer(scene, settings, 32, 4096);
+    EXPECT_EQ(one.mean.rgb, other.mean.rgb);
+    EXPECT_EQ(one.standard_error.rgb, other.standard_error.rgb);
+    EXPECT_EQ(one.samples, 128u);
+    EXPECT_EQ(one.iterations, 32u);
+}
+
+TEST(Reference, TrustsPixelsWhoseNeighbourhoodHasASmallError) {
+    Settings settings;
+    const Scene scene = glass_room(settings);
+    const Reference reference = refer(scene, settings, 32, 4096);
+    const Extent size = *settings.size;
+    const auto relative = [&](int x, int y) {  // squared
+        const glm::dvec3 r(reference.mean.at(x, y)), error(reference.standard_error.at(x, y));
+        return glm::dot(error * error, 1.0 / (r * r + 0.01)) / 3.0;
+    };
+    std::size_t untrusted = 0;
+    double relmse = 0.0;
+    for (int y = 0; y < int(size.height); ++y) {
+        for (int x = 0; x < int(size.width); ++x) {
+            double sum = 0.0, count = 0.0;
+            for (int v = y - 1; v <= y + 1; ++v) {
+                for (int u = x - 1; u <= x + 1; ++u) {
+                    if (u < 0 || v < 0 || u >= int(size.width) || v >= int(size.height)) continue;
+                    sum += relative(u, v);
+                    ++count;
+                }
+            }
+            const bool trusted = std::sqrt(sum / count) <= 0.05;
+            EXPECT_EQ(reference.trusted[std::size_t(y) * size.width + x], trusted ? 1.0f : 0.0f) << x << ", " << y;
+            untrusted += trusted ? 0 : 1;
+            relmse += relative(x, y) / double(size.pixels());
+        }
+    }
+    EXPECT_EQ(reference.untrusted, untrusted);
+    EXPECT_GT(untrusted, 0u);
+    EXPECT_LT(untrusted, size.pixels());
+    EXPECT_NEAR(reference.relmse, relmse, 1e-5 * relmse);
+    EXPECT_NEAR(reference.relmse_paths + reference.relmse_caustics, relmse, 1e-5 * relmse);
+}
 
 }  // namespace
 }  // namespace vkcppm::test
