@@ -486,6 +486,57 @@ TEST_F(Cli, WritesPictureViewAndStatistics) {
     EXPECT_GT(device_seconds, 0.0);
 }
 
+TEST_F(Cli, AReferenceTellsItsErrorAndHowToMakeItAgain) {
+    const Words words{"reference", scene("caustic"), "--size", "16x12", "--samples", "128", "--iterations", "32",
+                      "--photons", "500", "--quiet", "--json", "--validate", "-o"};
+    const auto with = [&](const Words& more) {
+        Words all = words;
+        all.insert(all.end(), more.begin(), more.end());
+        return run(all);
+    };
+    const auto result = with({"a.exr", "--stats", "a.json"});
+    expect_done(result);
+    EXPECT_EQ(result.err, "");
+    const Json summary = Json::parse(result.out);
+    const Json& error = summary.at("error");
+    EXPECT_EQ(error.at("samples_done"), 128);
+    EXPECT_EQ(error.at("iterations_done"), 32);
+    for (const char* name : {"relmse", "relmse_paths", "relmse_caustics", "caustic_share", "median_error", "error_99"}) {
+        EXPECT_GT(error.at(name).get<double>(), 0.0) << name;
+    }
+    EXPECT_EQ(read_exr(folder_ / "a.exr").extent, (Extent{16, 12}));
+    const auto text = attributes("a.exr");
+    for (const auto& [name, value] : std::map<std::string, std::string>{{"vkcppm.scene", "caustic.gltf"},
+                                                                        {"vkcppm.samples_done", "128"},
+                                                                        {"vkcppm.iterations_done", "32"},
+                                                                        {"vkcppm.photons", "500"},
+                                                                        {"vkcppm.size", "16x12"},
+                                                                        {"vkcppm.trust", "0.05"}}) {
+        ASSERT_TRUE(text.contains(name)) << name;
+        EXPECT_EQ(text.at(name), value) << name;
+    }
+    EXPECT_EQ(Json::parse(test::read_bytes(folder_ / "a.json")).at("passes").at(0).at("name"), "path");
+
+    // Again, and small; a picture measures against it.
+    expect_done(with({"b.exr"}));
+    EXPECT_EQ(test::read_bytes(folder_ / "a.exr"), test::read_bytes(folder_ / "b.exr"));
+    expect_done(with({"c.exr", "--half"}));
+    EXPECT_LT(fs::file_size(folder_ / "c.exr"), 0.7 * double(fs::file_size(folder_ / "a.exr")));
+    expect_done(run({"compare", "c.exr", "a.exr"}));
+}
+
+TEST_F(Cli, AReferenceRefusesWhatItCannotMake) {
+    const auto reference = [&](Words more) {
+        more.insert(more.begin(), {"reference", scene("caustic"), "--size", "8x6", "-o", "a.exr"});
+        return run(more);
+    };
+    expect_failure(reference({"--samples", "127"}), 2, {"--samples 127", "128"}, "too few paths");
+    expect_failure(reference({"--iterations", "31"}), 2, {"--iterations 31", "32"}, "too few iterations");
+    expect_failure(reference({"--trust", "0"}), 2, {"--trust 0"}, "no trust");
+    expect_failure(run({"reference", scene("caustic"), "-o", scene("caustic")}), 2, {"-o", "input"}, "its own input");
+    expect_failure(run({"reference", scene("caustic")}), 2, {"-o"}, "nowhere to write");
+}
+
 TEST_F(Cli, TheRecordNamesTheEnvironmentAndTheLens) {
     write_exr(folder_ / "sky.exr", Image{{2, 1}, {{1, 1, 1}, {2, 2, 2}}});
     expect_done(render({"-o", "a.exr", "--stats", "a.json", "--environment", (folder_ / "sky.exr").string(),

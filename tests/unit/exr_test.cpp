@@ -176,6 +176,22 @@ TEST(Exr, TakesFurtherChannels) {
     EXPECT_EQ(radius, channels.values["radius"]);
 }
 
+TEST(Exr, RoundsToHalfFloatsWhereThatIsAskedFor) {
+    const test::TemporaryFolder folder;
+    const Image image = numbered(7, 5);
+    ExrChannels channels = to_channels(image);
+    channels.values["Trust"].assign(35, 1.0f);
+    write_exr(folder / "a.exr", channels, {{"vkcppm.seed", "1"}}, ExrDepth::half);
+    Imf::InputFile input((folder / "a.exr").c_str());
+    for (auto it = input.header().channels().begin(); it != input.header().channels().end(); ++it) {
+        EXPECT_EQ(it.channel().type, Imf::HALF) << it.name();
+    }
+    const Image read = read_exr(folder / "a.exr");
+    for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+        for (int c = 0; c < 3; ++c) EXPECT_EQ(read.rgb[i][c], float(Imath::half(image.rgb[i][c]))) << i << ", " << c;
+    }
+}
+
 TEST(Exr, ReadsHalfMixedAndTiledFilesOfAnyChannels) {
     const test::TemporaryFolder folder;
     const std::vector<Plane> mixed = {{"A", Imf::HALF, 1.0f}, {"B", Imf::FLOAT, 0.125f}, {"Z", Imf::FLOAT, 9.0f},

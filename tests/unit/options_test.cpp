@@ -128,13 +128,44 @@ TEST(Options, TheFirstWordChoosesTheCommand) {
     EXPECT_EQ(std::get<RenderOptions>(parse({"--quiet", "info"})).scene.file, "info");
 }
 
+TEST(Options, AReferenceHasItsOwn) {
+    const auto standard = std::get<ReferenceOptions>(parse({"reference", "a.gltf", "-o", "r.exr"}));
+    EXPECT_EQ(standard.scene.file, "a.gltf");
+    EXPECT_EQ(standard.output, "r.exr");
+    EXPECT_EQ(standard.settings.samples, 1024u);
+    EXPECT_EQ(standard.settings.trust, 0.05);
+    EXPECT_FALSE(standard.settings.render.seconds);
+    EXPECT_FALSE(standard.half || standard.json || standard.quiet);
+
+    const auto timed = std::get<ReferenceOptions>(parse({"reference", "a.gltf", "-o", "r.exr", "--time", "10m"}));
+    EXPECT_EQ(timed.settings.render.seconds, 600.0);
+    EXPECT_EQ(timed.settings.samples, unbounded_samples);
+    EXPECT_EQ(timed.settings.render.iterations, unbounded_iterations);
+
+    const auto all = std::get<ReferenceOptions>(
+        parse({"reference", "a.gltf", "-o", "r.exr", "--time", "2s", "--samples", "256", "--iterations", "40",
+               "--photons", "99", "--trust", "0.1", "--size", "20x10", "--seed", "7", "--max-depth", "9", "--half",
+               "--json", "--quiet", "--stats", "s.json", "--aperture", "0.1", "--focus-distance", "2"}));
+    EXPECT_EQ(all.settings.samples, 256u);
+    EXPECT_EQ(all.settings.render.iterations, 40u);
+    EXPECT_EQ(all.settings.render.photons, 99u);
+    EXPECT_EQ(all.settings.trust, 0.1);
+    EXPECT_EQ(all.settings.render.size, (Extent{20, 10}));
+    EXPECT_EQ(all.settings.render.seed, 7u);
+    EXPECT_EQ(all.settings.render.max_depth, 9u);
+    EXPECT_EQ(all.settings.render.aperture, 0.1);
+    EXPECT_EQ(all.settings.render.focus_distance, 2.0);
+    EXPECT_EQ(all.stats, "s.json");
+    EXPECT_TRUE(all.half && all.json && all.quiet);
+}
+
 TEST(Options, HelpNamesEveryOptionAndEstimator) {
     const std::string help = std::get<TextOptions>(parse({"--help"})).text;
     for (const char* name :
          {"SCENE", "-o", "--estimator", "--iterations", "--time", "--photons", "--size", "--camera", "--seed",
           "--max-depth", "--knn", "--alpha", "--k ", "--beta", "--significance", "--device", "--stats", "--quiet",
           "--verbose", "--png", "--exposure", "--rings", "--sectors", "--validate", "--version", "cppm", "sppm:",
-          "sppm-kz", "race", "compare", "info", "devices", "73", "--environment", "--thin-glass", "--aperture",
+          "sppm-kz", "race", "reference", "compare", "info", "devices", "73", "--environment", "--thin-glass", "--aperture",
           "--focus-distance", "--reference", "--stop-at", "smape_trimmed", "clock"}) {
         EXPECT_NE(help.find(name), std::string::npos) << name << " is not in\n" << help;
     }
