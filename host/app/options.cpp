@@ -366,7 +366,7 @@ Options parse_reference(const Words& words) {
                  "photons for caustics. A scene of the name of a command is given as ./compare.",
                  "vkcppm reference");
     add_scene(app, options.scene);
-    app.add_option("-o", options.output, "The picture: linear EXR, R G B, StdErr.R G B and Trust")
+    app.add_option("-o", options.output, "The picture: linear EXR of R G B, StdErr and Trust")
         ->type_name("REF.exr")
         ->required();
     app.add_flag("--half", options.half, "16-bit floats: a small file");

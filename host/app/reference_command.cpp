@@ -1,7 +1,9 @@
+#include <cmath>
 #include <cstdio>
 #include <string>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 #include <unistd.h>
 
 #include "app/commands.h"
@@ -32,10 +34,17 @@ Reference refine_with_progress(const Scene& scene, const ReferenceOptions& optio
     });
 }
 
+/// To 1 part in 8: nobody knows an error better, and the noise of more digits takes room in a file.
+float rounded_error(float error) {
+    int exponent = 0;
+    const float fraction = std::frexp(error, &exponent);
+    return std::ldexp(std::round(8.0f * fraction) / 8.0f, exponent);
+}
+
 ExrChannels channels_of(const Reference& reference) {
     ExrChannels channels = to_channels(reference.mean);
-    for (auto& [name, values] : to_channels(reference.standard_error).values) {
-        channels.values["StdErr." + name] = std::move(values);
+    for (const glm::vec3& error : reference.standard_error.rgb) {
+        channels.values["StdErr"].push_back(rounded_error(std::sqrt(glm::dot(error, error) / 3.0f)));
     }
     channels.values["Trust"] = reference.trusted;
     return channels;

@@ -13,7 +13,8 @@ using Json = nlohmann::ordered_json;
 Json reference_settings_json(const ReferenceSettings& settings) {
     const Json render = settings_json(settings.render);
     Json json;
-    for (const char* name : {"time", "photons", "iterations", "size", "camera", "aperture", "focus_distance", "seed", "max_depth"}) {
+    for (const char* name : {"time", "photons", "iterations", "size", "camera", "aperture", "focus_distance", "seed",
+                             "max_depth"}) {
         if (render.contains(name)) json[name] = render[name];
     }
     json["samples"] = settings.samples;
