@@ -53,7 +53,7 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     pixels_ = settings.size->pixels();
     for (const Pass pass : {Pass::eye, Pass::photon, Pass::knn, Pass::gather}) rounds_[pass] = 1;
 
-    params_ = scene_params(device, scene, camera, settings);
+    params_ = scene_params(device, scene, camera, settings, settings.caustics.has_value());
     set_test(params_, estimator, settings);
     params_.photons = scene.lights.empty() ? 0 : settings.photons;
     params_.inverse_paths = params_.photons > 0 ? 1.0f / float(params_.photons) : 0.0f;

@@ -16,7 +16,7 @@ constexpr std::uint32_t workgroup = 64;
 Specialization specialize(const FlatScene& scene, const Settings& settings, PathTracer::Light light) {
     std::uint32_t features = bits_of(scene.features) | bits_of(features_of(settings));
     features &= ~(FEATURE_AOVS | FEATURE_SPLIT);
-    if (light == PathTracer::Light::without_caustics) features |= FEATURE_SPLIT;
+    if (light == PathTracer::Light::split) features |= FEATURE_SPLIT;
     return {{SPEC_WORKGROUP, workgroup}, {SPEC_STACK, scene.bvh.stack}, {SPEC_FEATURES, features}};
 }
 
@@ -29,7 +29,7 @@ PathTracer::PathTracer(Device& device, const FlatScene& scene, const Camera& cam
       kernel_(device, bindings_, "path", kernel_module("path").spirv, specialize(scene, settings, light)),
       size_(*settings.size) {
     using Kind = Buffer::Kind;
-    const gpu::Params params = scene_params(device, scene, camera, settings);
+    const gpu::Params params = scene_params(device, scene, camera, settings, light == Light::split);
     buffers_.upload(BIND_PARAMS, "parameters", std::vector{params}, Kind::uniform);
     buffers_.allocate(BIND_STATUS, "status", sizeof(gpu::Status), Kind::storage);
     buffers_.allocate(BIND_PATHS, "traces", size_.pixels() * sizeof(gpu::TraceState), Kind::storage);

@@ -15,8 +15,8 @@ namespace vkcppm {
 
 class PathTracer {
 public:
-    /// Which paths: all that path tracing finds, or those that are no caustics (FEATURE_SPLIT).
-    enum class Light { all, without_caustics };
+    /// Which paths: all that path tracing finds, or the paths' half of split light (FEATURE_SPLIT).
+    enum class Light { all, split };
 
     /// Uploads the scene and compiles the pipeline. `settings` must be resolved; size, camera, lens, seed and max_depth
     /// count. Throws Error(out_of_device_memory) where the scene or the picture does not fit the device.

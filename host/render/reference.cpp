@@ -71,7 +71,7 @@ class Paths : public Half {
 public:
     Paths(Device& device, const FlatScene& flat, const Camera& camera, const ReferenceSettings& settings)
         : Half(*settings.render.size, settings.samples / PathTracer::batch),
-          tracer(device, flat, camera, settings.render, PathTracer::Light::without_caustics) {}
+          tracer(device, flat, camera, settings.render, PathTracer::Light::split) {}
 
     PathTracer tracer;
 
@@ -261,8 +261,7 @@ Reference make_reference(const Scene& scene, const ReferenceSettings& wanted, De
     const FlatScene flat = flatten(scene);
     Paths paths(device, flat, camera, result.settings);
     std::unique_ptr<Caustics> caustics;
-    // Without a delta lobe there are none.
-    if (std::ranges::any_of(traits_of(scene), &SurfaceTraits::smooth)) {
+    if (splits_near_lamps(flat) || std::ranges::any_of(traits_of(scene), &SurfaceTraits::smooth)) {
         caustics = std::make_unique<Caustics>(device, flat, camera, result.settings);
     }
     std::vector<Half*> halves{&paths};

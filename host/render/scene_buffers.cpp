@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "render/features.h"
 #include "shared/bindings.h"
 
 namespace vkcppm {
@@ -45,7 +46,14 @@ void SceneBuffers::allocate(std::uint32_t binding, const std::string& name, std:
     bindings_.bind(binding, buffers_.at(binding));
 }
 
-gpu::Params scene_params(const Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings) {
+bool splits_near_lamps(const FlatScene& scene) {
+    // Photons that pass a surface do not remember how far they have come.
+    const std::uint32_t features = bits_of(scene.features);
+    return (features & FEATURE_AREA_LIGHTS) != 0 && (features & FEATURE_ALPHA) == 0;
+}
+
+gpu::Params scene_params(const Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings,
+                         bool split) {
     gpu::Params params{};
     set_camera(params, camera, scene.frame, *settings.size);
     params.seed = settings.seed;
@@ -54,6 +62,7 @@ gpu::Params scene_params(const Device& device, const FlatScene& scene, const Cam
     params.max_depth = settings.max_depth;
     params.light_count = std::uint32_t(scene.lights.size());
     params.punctual_lights = scene.punctual_lights;
+    if (split && splits_near_lamps(scene)) params.near_lights = float(near_lamp * scene.radius);
     params.light_power = float(scene.light_power);
     params.environment = {scene.environment_size.width, scene.environment_size.height};
     params.lens_radius = float(0.5 * settings.aperture * scene.frame.scale);

@@ -42,8 +42,16 @@ private:
     std::map<std::uint32_t, Buffer> buffers_;
 };
 
+/// The part of the scene's radius from a lamp within which a surface is near it, where light is split.
+inline constexpr double near_lamp = 0.04;
+
 /// Camera, lens, bounds, lights, seed, depth and step budget, in the scene's frame; the rest is 0. `settings` must be
-/// resolved.
-gpu::Params scene_params(const Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings);
+/// resolved. split: FEATURE_SPLIT.
+gpu::Params scene_params(const Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings,
+                         bool split);
+
+/// True where splitting the light of this scene takes what is near its lamps to the photons: it has lamps of some area, and
+/// no surface that is partly there.
+bool splits_near_lamps(const FlatScene& scene);
 
 }  // namespace vkcppm

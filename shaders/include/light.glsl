@@ -153,9 +153,9 @@ LightSample sample_light(uvec4 bits, vec2 v, vec3 position) {
 
 // The start of a light path: lights in proportion to their power, then position and
 // direction in proportion to what the light emits there, so that every path carries the same power at its start (but
-// for what a texture varies within a triangle). bits: four random words; v: four numbers in [0, 1). Returns whether the
-// light is punctual: of no area, so that no eye path meets it.
-bool emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 power) {
+// for what a texture varies within a triangle). bits: four random words; v: four numbers in [0, 1). Returns the
+// kind of the light.
+uint emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 power) {
     vec4 u = unit_floats(bits);
     uint index;
     Light light = choose_light(bits, index);
@@ -191,5 +191,5 @@ bool emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 powe
         // From the disc that covers the scene, as a directional light; far enough to lie outside of all.
         origin = light.position + 1.5 * light.e2.x * away + from_frame(away, vec3(light.e2.x * sample_disc(v.zw), 0.0));
     }
-    return light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT || light.kind == LIGHT_DIRECTIONAL;
+    return light.kind;
 }

@@ -2,7 +2,7 @@
 // The path tracer: one invocation a pixel, launch.count paths of it one after the other, so that a SIMD group stays full.
 // Unbiased: every vertex with a lobe of width above 0 asks for one point of the lights, and what the next ray meets counts
 // too; both are weighed by the power heuristic (Veach 1997, section 9.2.4), punctual lights are asked for alone. A ray to a
-// light is stopped by glass. Where light is split (FEATURE_SPLIT) caustics are left out; else light of punctual lights
+// light is stopped by glass. Where light is split (FEATURE_SPLIT) what photons bring is left out; else light of punctual lights
 // by way of delta lobes is missing, which no path finds.
 // Reads the scene and the lights; writes image [P], the mean of the launch's paths, and traces. O(paths x bounces x log
 // triangles). Fails by running out of steps: goes on next round.
@@ -50,6 +50,7 @@ float met_weight(TraceState state, float light_density) {
 vec3 met_emission(TraceState state, Surface surface, SurfaceMaterial material) {
     bool double_sided = has(material, SURFACE_DOUBLE_SIDED);
     if (material.emission == vec3(0.0) || !(surface.front || double_sided)) return vec3(0.0);
+    if ((state.memory & PATH_SCATTERED) != 0u && state.distance < params.near_lights) return vec3(0.0);
     // Without textures, as where the light is asked for.
     vec3 factor = (FEATURES & FEATURE_TEXTURES) != 0u ? factors_of(surface.material).emission : material.emission;
     float cosine = max(1e-12, -dot(state.direction, surface.geometric));
@@ -72,7 +73,9 @@ void ask_for_light(inout TraceState state, Bsdf bsdf, Surface surface, vec4 lobe
         uint medium = memory >> PATH_MEDIUM_SHIFT;
         if (medium != PATH_NO_MEDIUM) factor *= exp(-light.distance * absorption_of(medium));
     }
-    if (!any(greaterThan(factor, vec3(0.0)))) return;
+    // What is lit so near, and seen by way of another surface, is left to photons.
+    bool near = (state.memory & PATH_STRAIGHT) == 0u && light.triangle != NO_TRIANGLE && light.distance < params.near_lights;
+    if (near || !any(greaterThan(factor, vec3(0.0)))) return;
     state.light = state.throughput * factor;
     state.light_origin = leave(surface, light.direction);
     state.light_direction = light.direction;
@@ -94,6 +97,8 @@ bool scatter(inout TraceState state, Bsdf bsdf, Surface surface, vec4 lobes, vec
                  (abs(dot(state.direction, surface.normal)) / state.density);
     }
     state.throughput *= weight;
+    bool again = state.density != DELTA && (state.memory & PATH_STRAIGHT) == 0u;
+    state.memory = again ? state.memory | PATH_SCATTERED : state.memory & ~PATH_SCATTERED;
     state.memory = pass_boundary(leave_lobe(state.memory, state.density), bsdf, lobe, surface);
     return any(greaterThan(state.throughput, vec3(0.0)));
 }

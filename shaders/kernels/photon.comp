@@ -57,10 +57,14 @@ void main() {
         uint path = first + state.path;
         if (running && fresh) {
             if ((state.memory & PATH_BOUNCES) == 0u) {
-                bool punctual = emit(random_words(params.seed, launch.iteration, STREAM_PHOTON, path, 0u),
-                                     random4(params.seed, launch.iteration, STREAM_PHOTON, path, 1u),
-                                     state.origin, state.direction, state.power);
-                state.memory = PATH_OUTSIDE | (punctual ? PATH_STRAIGHT | PATH_DIRECT : 0u);
+                uint kind = emit(random_words(params.seed, launch.iteration, STREAM_PHOTON, path, 0u),
+                                 random4(params.seed, launch.iteration, STREAM_PHOTON, path, 1u),
+                                 state.origin, state.direction, state.power);
+                // Of no area, so that no eye path meets it.
+                bool punctual = kind == LIGHT_POINT || kind == LIGHT_SPOT || kind == LIGHT_DIRECTIONAL;
+                state.memory = PATH_OUTSIDE;
+                if (punctual) state.memory |= PATH_STRAIGHT;
+                if (kind != LIGHT_ENVIRONMENT) state.memory |= PATH_DIRECT;
                 state.origin = enter_bounds(state.origin, state.direction);
                 state.power0 = largest(state.power);
             }
@@ -94,15 +98,17 @@ void main() {
             if ((FEATURES & FEATURE_UNLIT) != 0u && has(material, SURFACE_UNLIT)) bsdf = black();
             // What is black reflects no photon to any eye. Where a surface is partly there the photon counts in full: it
             // tells how much light arrives, and the eye path has asked for the surface.
-            // Where light is split, that of all but caustics is left to paths.
+            // Where light is split, the rest is left to paths.
             bool counts = (FEATURES & FEATURE_SPLIT) == 0u || (state.memory & PATH_CAUSTIC) != 0u;
             if (counts && gathers_light(bsdf)) {
                 if (state.stored < params.photon_capacity) {
                     photons[slot + state.stored] = Photon(surface.position, pack_direction(surface.geometric));
                     vec3 power = state.power;
-                    if (PUNCTUAL_ON_ROUGH && (state.memory & (PATH_STRAIGHT | PATH_DIRECT)) == PATH_STRAIGHT) {
-                        power.r = uintBitsToFloat(floatBitsToUint(power.r) | 0x80000000u);
-                    }
+                    // Two conditions: their disjunction is a constant that the optimiser loses.
+                    bool all = (state.memory & (PATH_STRAIGHT | PATH_DIRECT)) == PATH_STRAIGHT;
+                    uint red = floatBitsToUint(power.r) | (all ? 0x80000000u : 0u);
+                    if (PUNCTUAL_ON_ROUGH) power.r = uintBitsToFloat(red);
+                    if ((FEATURES & FEATURE_SPLIT) != 0u) power.r = uintBitsToFloat(red);
                     if ((FEATURES & FEATURE_SPLIT) != 0u && (state.memory & PATH_SCATTERED) == 0u) {
                         power.g = uintBitsToFloat(floatBitsToUint(power.g) | 0x80000000u);
                     }
@@ -126,13 +132,20 @@ void main() {
                 float density;
                 vec3 weight = sample_lobe(lobe, bsdf, surface, u.xy, false, state.direction, density);
                 state.power *= weight * inverse_probability;
-                if ((FEATURES & FEATURE_SPLIT) != 0u) {
-                    if (density == DELTA) state.memory |= PATH_CAUSTIC;
-                    if (density != DELTA) state.memory |= PATH_SCATTERED;
-                    alive = alive && (state.memory & PATH_CAUSTIC) != 0u;
-                }
+                bool near = (state.memory & (PATH_STRAIGHT | PATH_DIRECT)) == PATH_DIRECT && hit.t < params.near_lights;
                 state.memory &= ~PATH_DIRECT;
                 if (density != DELTA) state.memory &= ~PATH_STRAIGHT;
+                if ((FEATURES & FEATURE_SPLIT) != 0u) {
+                    if (density == DELTA) {
+                        state.memory |= PATH_CAUSTIC;
+                    } else if (near) {
+                        // As a light of its own, which eye paths do not find.
+                        state.memory |= PATH_CAUSTIC | PATH_STRAIGHT;
+                    } else {
+                        state.memory |= PATH_SCATTERED;
+                    }
+                    alive = alive && (state.memory & PATH_CAUSTIC) != 0u;
+                }
                 if ((FEATURES & FEATURE_SMOOTH) != 0u && density != DELTA) {
                     state.power *= shading_correction(surface, before, state.direction);
                 }

@@ -56,8 +56,8 @@ using uint = std::uint32_t;
 #define FEATURE_SPOT_LIGHTS 0x200000u
 #define FEATURE_DIRECTIONAL_LIGHTS 0x400000u
 #define FEATURE_ENVIRONMENT 0x800000u
-#define FEATURE_SPLIT 0x1000000u       // light is split in two: photons bring caustics, paths all but them; a caustic leaves
-                                       // its light by way of one or more delta lobes before it meets any other lobe
+#define FEATURE_SPLIT 0x1000000u       // light is split in two: photons bring caustics and what is lit at less than
+                                       // near_lights from its lamp, as fixtures are, paths the rest: render/reference.h
 #define FEATURE_PUNCTUAL_LIGHTS (FEATURE_POINT_LIGHTS | FEATURE_SPOT_LIGHTS | FEATURE_DIRECTIONAL_LIGHTS)
 
 #define MAX_RINGS 4
@@ -235,12 +235,13 @@ struct HitSurface {
 #define PATH_BOUNCES 0x7ffu
 #define PATH_STRAIGHT 0x800u    // it has met nothing but delta lobes since it left the eye or a punctual light
 #define PATH_DISPERSED 0x1000u  // its wavelength is drawn
-#define PATH_DIRECT 0x2000u     // a photon that has met nothing yet since it left a punctual light
+#define PATH_DIRECT 0x2000u     // a photon that has met nothing yet since it left a punctual light or a triangle
 #define PATH_SHADOW 0x2000u     // an eye path whose last ray asks whether a punctual light is seen
-#define PATH_SCATTERED 0x4000u  // a photon that has met another lobe than a delta, where light is split
+#define PATH_SCATTERED 0x4000u  // where light is split: a photon since it met another lobe than a delta, but for the surface
+                                // near its lamp; an eye path whose last lobe was no delta, and one before it neither
 #define PATH_SEEN 0x4000u       // an eye path that has met a surface that is there
-#define PATH_CAUSTIC 0x8000u    // a photon that left its light by way of a delta lobe; an eye path whose last lobe was a
-                                // delta and one before was not
+#define PATH_CAUSTIC 0x8000u    // a photon that left its light by way of a delta lobe, or of a surface near a lamp; an eye
+                                // path whose last lobe was a delta and one before was not
 #define PATH_MEDIUM_SHIFT 16u
 #define PATH_NO_MEDIUM 0xffffu  // also the largest number of materials
 
@@ -368,6 +369,7 @@ struct Params {
     uint max_depth;
     uint light_count;
     uint punctual_lights;  // the first so many of them
+    float near_lights;     // frame units; 0 where light is not split
     float light_power;     // of all lights, mean channel, W (frame-scaled): what the alias table is in proportion to
     uvec2 environment;     // its columns and rows
     float lens_radius;     // frame units; at focus_distance along the axis a point is sharp

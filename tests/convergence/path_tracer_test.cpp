@@ -21,6 +21,7 @@
 #include "support/gpu.h"
 #include "support/rooms.h"
 #include "support/scenes.h"
+#include "support/shapes.h"
 
 namespace vkcppm::test {
 namespace {
@@ -43,7 +44,7 @@ reference::PathTracing trace_on_device(const Scene& scene, const Settings& wante
     return result;
 }
 
-reference::PathTracing trace_in_double(const Scene& scene, const Settings& settings) {
+reference::PathTracing trace_in_double(const Scene& scene, const Settings& settings, std::uint32_t samples) {
     reference::PathTracerSettings reference;
     reference.size = *settings.size;
     reference.samples = samples;
@@ -69,7 +70,7 @@ TEST_P(PathTracerRooms, AgreeWithDoublePrecision) {
     Settings settings;
     GetParam().change(scene, settings);
     settings.size = Extent{16, 16};
-    const reference::PathTracing paths = trace_in_double(scene, settings);
+    const reference::PathTracing paths = trace_in_double(scene, settings, samples);
     const BlockSettings exact{.side = 8, .level = 1e-4, .bias = 1e-6};
     const BlockComparison blocks = compare_blocks(trace_on_device(scene, settings), paths, exact);
     EXPECT_EQ(blocks.differing, 0u) << "device over double, a block and channel:\n" << blocks.table;
@@ -151,6 +152,25 @@ Scene glass_room(Settings& settings) {
     std::ranges::find_if(cases, [](const Case& c) { return std::string(c.name) == "glass"; })->change(scene, settings);
     settings.size = Extent{16, 12};
     return scene;
+}
+
+TEST(Reference, LeavesWhatIsNearItsLampToPhotons) {
+    Settings settings;
+    settings.size = Extent{16, 16};
+    Scene scene = make_room();
+    // A frame of 60 mm round the lamp, and a ball of rough metal that sees it.
+    const auto frame = std::uint32_t(scene.materials.size());
+    add_diffuse(scene, glm::vec3(0.9f, 0.8f, 0.7f));
+    for (const double x : {0.39, 1.61}) add_quad(scene, {x, 1.93, 0.4}, {0, 0.06, 0}, {0, 0, 1.2}, frame);
+    for (const double z : {0.39, 1.61}) add_quad(scene, {0.4, 1.93, z}, {0, 0.06, 0}, {1.2, 0, 0}, frame);
+    scene.materials[2].metallic = 1.0f;
+    scene.materials[2].roughness = 0.4f;
+    const Reference reference = refer(scene, settings, 64, 16384);
+    EXPECT_GT(reference.caustic_share, 0.01);
+    const BlockComparison sum = compare_blocks({reference.mean, reference.standard_error},
+                                               trace_in_double(scene, settings, 1024),
+                                               {.side = 8, .level = 1e-4, .bias = 0.002});
+    EXPECT_EQ(sum.differing, 0u) << "reference over paths, a block and channel:\n" << sum.table;
 }
 
 TEST(Reference, ErrorIsTheSpreadOfSeeds) {

@@ -19,7 +19,7 @@ void main() {
     uint i = invocation();
     if (i >= launch.count) return;
     EmitOutput start;
-    start.punctual = emit(inputs[i].bits, inputs[i].v, start.origin, start.direction, start.power) ? 1u : 0u;
+    start.kind = emit(inputs[i].bits, inputs[i].v, start.origin, start.direction, start.power);
     start.radiance = vec3(0.0);
     if ((FEATURES & FEATURE_ENVIRONMENT) != 0u) start.radiance = environment_radiance(-start.direction);
     outputs[i] = start;

@@ -196,7 +196,7 @@ TEST_F(Emission, LightsEmitTheirShareWhereAndWhereTo) {
             const glm::dvec3 expected = source.flux * (mean(total) / mean(source.flux));
             if (glm::distance(power, expected) > 2e-6 * glm::length(expected)) continue;
             known = true;
-            ASSERT_EQ(start.punctual, source.light ? 1u : 0u) << source.name;
+            ASSERT_EQ(start.kind == LIGHT_TRIANGLE, source.light == nullptr) << source.name;
             source.starts.push_back(start);
         }
         ASSERT_TRUE(known) << "power (" << power.x << ", " << power.y << ", " << power.z << ") W is that of no light";
@@ -350,7 +350,7 @@ TEST_F(Emission, AnEnvironmentEmitsItsRadianceFromEveryPixel) {
         glm::dvec3 sum(0.0), squares(0.0);
         std::size_t edges = 0;
         for (const auto& start : emit(flat, inputs)) {
-            EXPECT_EQ(start.punctual, 0u);
+            EXPECT_EQ(start.kind, LIGHT_ENVIRONMENT);
             const glm::dvec3 away = -glm::dvec3(start.direction);
             ASSERT_NEAR(glm::length(away), 1.0, 1e-6);
             const double x = columns * (0.5 + std::atan2(away.z, away.x) / (2.0 * pi));

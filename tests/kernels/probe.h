@@ -54,7 +54,7 @@ struct EmitOutput {
     vec3 origin;
     vec3 direction;
     vec3 power;
-    uint punctual;       // the light has no area
+    uint kind;           // LIGHT_*
     vec3 radiance;       // of the environment, against the direction
 };
 
