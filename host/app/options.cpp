@@ -331,6 +331,9 @@ Options parse_race(const Words& words) {
                    "What errors are measured against; without --size it tells the size\n"
                    "(default: references/NAME.exr beside the scene)")
         ->type_name("REF.exr");
+    add(app, "--make-reference", "TIME", options.make_reference, parse_seconds,
+        "Make it first, in this time, as vkcppm reference does, with a seed that does not race: DIR/reference.exr")
+        ->excludes("--reference");
     add(app, "--exposure", "EV", options.exposure, parse_real, "Stops by which pictures are brightened (default: 0)");
     add_common(app, settings);
     add_parameters(app, settings);

@@ -70,6 +70,7 @@ struct RaceOptions {
     SceneOptions scene;
     RaceSettings race;                                  // ranges unchecked: resolve_race does that
     std::optional<std::filesystem::path> reference;     // EXR; by default references/NAME.exr beside the scene
+    std::optional<double> make_reference;               // s: one is made for the race, in at most that time
     std::filesystem::path folder;                       // of all that is written
     double exposure = 0.0;                              // stops, for the pictures
     Device::Options device;

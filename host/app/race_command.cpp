@@ -18,12 +18,14 @@
 #include "app/race_record.h"
 #include "app/record.h"
 #include "app/reference.h"
+#include "app/reference_record.h"
 #include "app/validation.h"
 #include "core/error.h"
 #include "io/atomic_file.h"
 #include "io/exr.h"
 #include "io/png.h"
 #include "render/race.h"
+#include "render/reference.h"
 
 namespace vkcppm {
 namespace fs = std::filesystem;
@@ -35,8 +37,9 @@ fs::path find_reference(const RaceOptions& options) {
     const fs::path& scene = options.scene.file;
     const fs::path file = scene.parent_path() / "references" / (scene.stem().string() + ".exr");
     if (!fs::exists(file)) {
-        throw Error(ExitCode::usage, fmt::format("nothing to measure against: there is no {}; name a picture of {} by "
-                                                 "--reference", file.string(), scene.string()));
+        throw Error(ExitCode::usage,
+                    fmt::format("nothing to measure against: there is no {}; name a picture of {} by --reference, or "
+                                "let --make-reference make one", file.string(), scene.string()));
     }
     return file;
 }
@@ -85,6 +88,33 @@ std::string race_text(const RaceProgress& progress) {
     }
     fmt::format_to(out, "; {} {}", metric.title, fmt::join(errors, ", "));
     return text;
+}
+
+/// Makes the reference of the race and writes it to DIR/reference.exr, with its attributes into `input`. Its seed is
+/// the one after those of the race: photons that both saw would tie their errors.
+Image make_race_reference(const RaceOptions& options, RaceInput& input, const RaceSettings& race, Device& device) {
+    ReferenceOptions wanted;
+    wanted.scene = options.scene;
+    wanted.settings.render = race.entrants.front().settings;
+    wanted.settings.render.seed += race.seeds;
+    wanted.settings.render.iterations = unbounded_iterations;
+    wanted.settings.render.seconds = options.make_reference;
+    wanted.settings.samples = unbounded_samples;
+    ProgressLine line(stderr, ::isatty(STDERR_FILENO) == 1, std::nullopt);
+    const auto refine = [&](const ReferenceProgress& progress) {
+        if (!options.quiet) {
+            line.update(progress.wall_seconds, fmt::format("reference: {} of {}, relMSE about {:.2g}",
+                                                           duration_text(progress.wall_seconds),
+                                                           duration_text(*options.make_reference), progress.relmse));
+        }
+        return !interrupted();
+    };
+    const Reference reference = make_reference(input.scene, wanted.settings, device, refine);
+    if (!options.quiet) line.finish_with(fmt::format("reference: relMSE about {:.2g}", reference.relmse));
+    print_warnings(reference.warnings);
+    input.reference_attributes = reference_attributes(wanted, input.scene, reference);
+    write_exr(input.reference, reference_channels(reference), input.reference_attributes);
+    return reference.mean;
 }
 
 RaceResult race_with_progress(const Scene& scene, const RaceOptions& options, const RaceSettings& race,
@@ -136,21 +166,26 @@ void execute(const RaceOptions& options) {
     catch_interrupts();
     const Scene scene = load_scene(options.scene);
     print_warnings(scene.warnings);
-    const fs::path file = find_reference(options);
-    const RaceInput input{scene, file, read_exr_attributes(file)};
+    RaceInput input{scene, options.make_reference ? options.folder / "reference.exr" : find_reference(options), {}};
     RaceSettings wanted = options.race;
-    for (Entrant& entrant : wanted.entrants) {
-        if (!entrant.settings.size) entrant.settings.size = read_exr(file).extent;
+    Image reference;
+    if (!options.make_reference) {
+        input.reference_attributes = read_exr_attributes(input.reference);
+        for (Entrant& entrant : wanted.entrants) {
+            if (!entrant.settings.size) entrant.settings.size = read_exr(input.reference).extent;
+        }
     }
     const RaceSettings race = resolve_race(wanted, scene);
-    const Settings& settings = race.entrants.front().settings;
-    const Image reference = read_reference(file, *settings.size);
-    Rendering sample;
-    sample.settings = settings;
-    print_warnings(mismatches(input, exr_attributes(options.scene, scene, sample)));
+    if (!options.make_reference) {
+        Rendering sample;
+        sample.settings = race.entrants.front().settings;
+        reference = read_reference(input.reference, *sample.settings.size);
+        print_warnings(mismatches(input, exr_attributes(options.scene, scene, sample)));
+    }
     make_folder(options.folder);
     Device device(options.device);
     require_validation(options.device, device);
+    if (options.make_reference) reference = make_race_reference(options, input, race, device);
 
     const RaceResult result = race_with_progress(scene, options, race, reference, device);
     print_warnings(result.warnings);

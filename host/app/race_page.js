@@ -281,7 +281,8 @@ function drawNotes() {
     `Errors are squared, means over channels${seeds === 1 ? '' : ` and ${seeds} seeds`}, each estimator at its end. ` +
     'A single pixel is a throw of dice between good estimators; over its neighbours it shows where one is better.';
   at('settings-note').textContent =
-    'With the same device and driver the error against iterations is the same to the last bit. ' +
+    'With the same device, driver and reference the error against iterations is the same to the last bit' +
+    (race.reference_made ? `; the reference of this race is ${race.reference.file}. ` : '. ') +
     'race.json holds all of this and every snapshot, curves.csv the snapshots alone; pictures are beside them as EXR ' +
     'and PNG.';
 }

@@ -57,7 +57,7 @@ function pointsOf(entrant, metric, axis) {
 
 /** What the reference says of its own error; NaN where it does not. */
 function noiseOf(metric) {
-  return metric.name === 'relmse' ? Number(race.reference.attributes['vkcppm.relmse']) : NaN;
+  return Number(race.reference.attributes[`vkcppm.${metric.name}`]);
 }
 
 /** Bounds of all points, a little room around them; null without points. */

@@ -105,6 +105,7 @@ Json race_json(const RaceOptions& options, const RaceInput& input, const RaceRes
     json["driver"] = first.reports.front().driver;
     json["reference"] = {{"file", input.reference.string()}, {"attributes", Json::object()}};
     for (const auto& [name, value] : input.reference_attributes) json["reference"]["attributes"][name] = value;
+    json["reference_made"] = options.make_reference.has_value();
     json["width"] = first.image.extent.width;
     json["height"] = first.image.extent.height;
     json["exposure"] = options.exposure;

@@ -1,9 +1,7 @@
-#include <cmath>
 #include <cstdio>
 #include <string>
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 #include <unistd.h>
 
 #include "app/commands.h"
@@ -34,22 +32,6 @@ Reference refine_with_progress(const Scene& scene, const ReferenceOptions& optio
     });
 }
 
-/// To 1 part in 8: nobody knows an error better, and the noise of more digits takes room in a file.
-float rounded_error(float error) {
-    int exponent = 0;
-    const float fraction = std::frexp(error, &exponent);
-    return std::ldexp(std::round(8.0f * fraction) / 8.0f, exponent);
-}
-
-ExrChannels channels_of(const Reference& reference) {
-    ExrChannels channels = to_channels(reference.mean);
-    for (const glm::vec3& error : reference.standard_error.rgb) {
-        channels.values["StdErr"].push_back(rounded_error(std::sqrt(glm::dot(error, error) / 3.0f)));
-    }
-    channels.values["Trust"] = reference.trusted;
-    return channels;
-}
-
 }  // namespace
 
 void execute(const ReferenceOptions& options) {
@@ -62,7 +44,7 @@ void execute(const ReferenceOptions& options) {
     require_validation(options.device, device);
     const Reference reference = refine_with_progress(scene, options, device);
     print_warnings(reference.warnings);
-    write_exr(options.output, channels_of(reference), reference_attributes(options, scene, reference),
+    write_exr(options.output, reference_channels(reference), reference_attributes(options, scene, reference),
               options.half ? ExrDepth::half : ExrDepth::full);
     if (options.stats) {
         write_file(*options.stats, reference_json(options, scene, reference, true));

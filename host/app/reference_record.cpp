@@ -1,6 +1,9 @@
 #include "app/reference_record.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
 #include "app/record.h"
@@ -25,6 +28,8 @@ Json reference_settings_json(const ReferenceSettings& settings) {
 Json error_json(const Reference& reference) {
     return {{"samples_done", reference.samples},
             {"iterations_done", reference.iterations},
+            {"mse", reference.mse},
+            {"srgb_mse", reference.srgb_mse},
             {"relmse", reference.relmse},
             {"relmse_paths", reference.relmse_paths},
             {"relmse_caustics", reference.relmse_caustics},
@@ -32,6 +37,13 @@ Json error_json(const Reference& reference) {
             {"median_error", reference.median_error},
             {"error_99", reference.error_99},
             {"untrusted", reference.untrusted}};
+}
+
+/// To 1 part in 8: nobody knows an error better, and the noise of more digits takes room in a file.
+float rounded_error(float error) {
+    int exponent = 0;
+    const float fraction = std::frexp(error, &exponent);
+    return std::ldexp(std::round(8.0f * fraction) / 8.0f, exponent);
 }
 
 }  // namespace
@@ -52,6 +64,15 @@ ExrAttributes reference_attributes(const ReferenceOptions& options, const Scene&
         attributes.emplace_back("vkcppm." + name, value.is_string() ? value.get<std::string>() : json_text(value));
     }
     return attributes;
+}
+
+ExrChannels reference_channels(const Reference& reference) {
+    ExrChannels channels = to_channels(reference.mean);
+    for (const glm::vec3& error : reference.standard_error.rgb) {
+        channels.values["StdErr"].push_back(rounded_error(std::sqrt(glm::dot(error, error) / 3.0f)));
+    }
+    channels.values["Trust"] = reference.trusted;
+    return channels;
 }
 
 std::string reference_json(const ReferenceOptions& options, const Scene& scene, const Reference& reference, bool stats) {

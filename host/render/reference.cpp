@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/process.h"
+#include "core/srgb.h"
 #include "render/flatten.h"
 #include "render/integrator.h"
 #include "render/moments.h"
@@ -214,6 +215,17 @@ ReferenceSettings resolve(const ReferenceSettings& wanted, const Scene& scene) {
     return settings;
 }
 
+/// Squares, a channel, of what an error of one standard error does to the 8-bit sRGB encoding, before it is rounded.
+glm::dvec3 srgb_squares(const glm::dvec3& mean, const glm::dvec3& standard_error) {
+    glm::dvec3 squares;
+    for (int c = 0; c < 3; ++c) {
+        const auto level = [&](double x) { return 255.0 * srgb_encode(std::clamp(x, 0.0, 1.0)); };
+        const double half = 0.5 * (level(mean[c] + standard_error[c]) - level(mean[c] - standard_error[c]));
+        squares[c] = half * half;
+    }
+    return squares;
+}
+
 void fill_statistics(Reference& result, const Paths& paths, const Caustics* caustics,
                      const std::vector<glm::dvec3>& mean) {
     const Extent extent = *result.settings.render.size;
@@ -236,6 +248,8 @@ void fill_statistics(Reference& result, const Paths& paths, const Caustics* caus
         if (caustics) squared += caustics->moments().squared_error(i);
         result.mean.rgb.emplace_back(mean[i]);
         result.standard_error.rgb.emplace_back(glm::sqrt(squared));
+        result.mse += mean_channel(squared) / double(mean.size());
+        result.srgb_mse += mean_channel(srgb_squares(mean[i], glm::sqrt(squared))) / double(mean.size());
         errors.push_back(std::sqrt(relative[i]));
         light += mean_channel(mean[i]);
         const bool trusted = std::sqrt(around(relative, extent, i)) <= result.settings.trust;

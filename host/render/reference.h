@@ -38,7 +38,10 @@ struct Reference {
     ReferenceSettings settings;    // as resolved
     std::uint32_t samples = 0;     // paths a pixel, done
     std::uint32_t iterations = 0;  // of caustics, done
-    double relmse = 0.0;           // expected relMSE (eps 0.01) of the mean itself: that mean over all pixels
+    /// What the errors of the mean itself are expected to add to a measure of core/metrics.h against it.
+    double mse = 0.0;
+    double srgb_mse = 0.0;
+    double relmse = 0.0;
     double relmse_paths = 0.0;     // what each half adds to it
     double relmse_caustics = 0.0;
     double caustic_share = 0.0;    // of the picture's light, sum over channels

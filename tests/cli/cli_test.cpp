@@ -501,7 +501,8 @@ TEST_F(Cli, AReferenceTellsItsErrorAndHowToMakeItAgain) {
     const Json& error = summary.at("error");
     EXPECT_EQ(error.at("samples_done"), 128);
     EXPECT_EQ(error.at("iterations_done"), 32);
-    for (const char* name : {"relmse", "relmse_paths", "relmse_caustics", "caustic_share", "median_error", "error_99"}) {
+    for (const char* name : {"mse", "srgb_mse", "relmse", "relmse_paths", "relmse_caustics", "caustic_share",
+                             "median_error", "error_99"}) {
         EXPECT_GT(error.at(name).get<double>(), 0.0) << name;
     }
     EXPECT_EQ(read_exr(folder_ / "a.exr").extent, (Extent{16, 12}));

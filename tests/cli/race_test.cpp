@@ -153,6 +153,24 @@ TEST_F(RaceCli, RefusesReferencesThatDoNotFit) {
     expect_failure(race("file/out", {"--reference", "ref.exr"}), 73, {"file/out"});
 }
 
+TEST_F(RaceCli, MakesItsReferenceWithASeedThatDoesNotRace) {
+    const auto made = race("out", {"--make-reference", "1ms", "--size", "16x12", "--seeds", "2", "--seed", "4"});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    const Json told = json("out/race.json");
+    EXPECT_EQ(told["reference"]["attributes"]["vkcppm.seed"], "6") << "4 and 5 race";
+    EXPECT_EQ(told["reference"]["attributes"]["vkcppm.size"], "16x12");
+    EXPECT_EQ(told["reference_made"], true);
+    EXPECT_EQ(told["reference"]["file"], "out/reference.exr");
+    EXPECT_GT(std::stod(told["reference"]["attributes"]["vkcppm.relmse"].get<std::string>()), 0.0);
+    // The same race against the picture that was made.
+    fs::rename(folder_ / "out/reference.exr", folder_ / "made.exr");
+    const std::vector<std::string> before = curves("out/curves.csv");
+    const auto again = race("again", {"--reference", "made.exr", "--seeds", "2", "--seed", "4"});
+    ASSERT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_EQ(again.err, "") << "its attributes fit the race";
+    EXPECT_EQ(curves("again/curves.csv"), before);
+}
+
 TEST_F(RaceCli, WarnsOfAReferenceThatShowsSomethingElse) {
     make_reference();
     const auto same = race("out", {"--reference", "ref.exr"});

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "core/metrics.h"
 #include "render/flatten.h"
 #include "render/moments.h"
 #include "render/path_tracer.h"
@@ -179,9 +180,13 @@ TEST(Reference, ErrorIsTheSpreadOfSeeds) {
     constexpr std::uint32_t seeds = 10;
     Moments moments(*settings.size);
     std::vector<double> stated(settings.size->pixels(), 0.0);  // squared standard error, mean over seeds and channels
-    double relmse = 0.0;
+    double relmse = 0.0, mse = 0.0, srgb_mse = 0.0;
+    std::vector<Image> pictures;
     for (settings.seed = 1; settings.seed <= seeds; ++settings.seed) {
         const Reference reference = refer(scene, settings, 32, 4096);
+        pictures.push_back(reference.mean);
+        mse += reference.mse / seeds;
+        srgb_mse += reference.srgb_mse / seeds;
         moments.add(reference.mean);
         for (std::size_t i = 0; i < stated.size(); ++i) {
             const glm::dvec3 error(reference.standard_error.rgb[i]);
@@ -202,6 +207,17 @@ TEST(Reference, ErrorIsTheSpreadOfSeeds) {
     EXPECT_GT(ratio, 0.7);
     EXPECT_LT(ratio, 1.2);
     EXPECT_NEAR(relative_spread / double(stated.size()) / relmse, 0.95, 0.25);
+    // Two pictures differ by the errors of both; encodings also by their rounding, a twelfth each.
+    double pairs = 0.0, pair_mse = 0.0, pair_srgb_mse = 0.0;
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j, ++pairs) {
+            const Comparison difference = compare(pictures[i], pictures[j]);
+            pair_mse += difference.mse.all;
+            pair_srgb_mse += difference.srgb_mse.all;
+        }
+    }
+    EXPECT_NEAR(pair_mse / pairs / (2.0 * mse), 0.95, 0.25);
+    EXPECT_NEAR(pair_srgb_mse / pairs / (2.0 * srgb_mse + 1.0 / 6.0), 0.95, 0.25);
 }
 
 TEST(Reference, SameSettingsSameBits) {

@@ -226,6 +226,8 @@ TEST(Options, EntrantsHaveParametersOfTheirOwn) {
     EXPECT_EQ(options.exposure, 2.0);
     EXPECT_EQ(options.device.select, "0");
     EXPECT_TRUE(options.quiet);
+    EXPECT_FALSE(options.make_reference);
+    EXPECT_EQ(parse_race({"--make-reference", "10m"}).make_reference, 600.0);
 }
 
 TEST(Options, ARaceRemembersItsCommandForAShell) {
@@ -243,6 +245,7 @@ TEST(Options, RefuseEveryBadLineWithOptionValueAndRange) {
         {{}, {"SCENE"}},
         {{"s", "t"}, {"t"}},
         {{"race", "s"}, {"-o"}},
+        {{"race", "s", "-o", "d", "--reference", "r.exr", "--make-reference", "1m"}, {"--make-reference", "--reference"}},
         {{"race", "s", "-o", "d", "--seeds", "0"}, {"--seeds", "0"}},
         {{"race", "s", "-o", "d", "--estimators", "cppm,nonsense"}, {"nonsense", "cppm-lf"}},
         {{"race", "s", "-o", "d", "--estimators", "cppm,"  ",sppm"}, {"none of", "cppm"}},
