@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -65,18 +66,15 @@ Json scene_json(const SceneOptions& options, const Scene& scene) {
             {"thin_glass", name_of(options.thin_glass)}};
 }
 
-ExrAttributes exr_attributes(const SceneOptions& options, const Scene& scene, const Rendering& rendering) {
-    Json json = settings_json(rendering.settings);
-    json["iterations_done"] = rendering.report.iterations;
-    json["emitted_photons"] = rendering.report.emitted_paths;
+ExrAttributes attributes_of(Json json, const SceneOptions& options, const Scene& scene, const Report& report) {
     json["scene"] = scene.file.filename().string();
     json["scene_hash"] = hash_text(scene);
     if (options.environment) {
         json["environment"] = options.environment->filename().string();
     }
     json["thin_glass"] = name_of(options.thin_glass);
-    json["device"] = rendering.report.device;
-    json["driver"] = rendering.report.driver;
+    json["device"] = report.device;
+    json["driver"] = report.driver;
     json["version"] = version();
     ExrAttributes attributes;
     for (const auto& [name, value] : json.items()) {
@@ -85,19 +83,22 @@ ExrAttributes exr_attributes(const SceneOptions& options, const Scene& scene, co
     return attributes;
 }
 
+ExrAttributes exr_attributes(const SceneOptions& options, const Scene& scene, const Rendering& rendering) {
+    Json json = settings_json(rendering.settings);
+    json["iterations_done"] = rendering.report.iterations;
+    json["emitted_photons"] = rendering.report.emitted_paths;
+    return attributes_of(std::move(json), options, scene, rendering.report);
+}
+
 bool reached(const StopAt& stop_at, const Rendering& rendering) {
     assert(!rendering.curve.empty());
     return stop_at.metric->of(rendering.curve.back().error) <= stop_at.value;
 }
 
-std::string stats_json(const RenderOptions& options, const Scene& scene, const Rendering& rendering) {
-    const Report& report = rendering.report;
+Json report_json(const Report& report) {
     Json json;
-    json["version"] = version();
     json["device"] = report.device;
     json["driver"] = report.driver;
-    json["scene"] = scene_json(options.scene, scene);
-    json["settings"] = settings_json(rendering.settings);
     json["totals"] = {{"iterations", report.iterations},
                       {"emitted_paths", report.emitted_paths},
                       {"stored_photons", report.stored_photons},
@@ -112,6 +113,15 @@ std::string stats_json(const RenderOptions& options, const Scene& scene, const R
         json["passes"].push_back(
             {{"name", pass.name}, {"calls", pass.calls}, {"device_seconds", pass.device_seconds}});
     }
+    return json;
+}
+
+std::string stats_json(const RenderOptions& options, const Scene& scene, const Rendering& rendering) {
+    Json json;
+    json["version"] = version();
+    json["scene"] = scene_json(options.scene, scene);
+    json["settings"] = settings_json(rendering.settings);
+    json.update(report_json(rendering.report));
     if (options.reference) {
         json["reference"] = options.reference->string();
         if (options.stop_at) {

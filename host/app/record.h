@@ -18,18 +18,26 @@ nlohmann::ordered_json settings_json(const Settings& settings);
 /// The scene's file and hash, its triangles, and what was done to it.
 nlohmann::ordered_json scene_json(const SceneOptions& options, const Scene& scene);
 
+/// What a run did: device, driver, totals and passes [{name, calls, device_seconds}].
+nlohmann::ordered_json report_json(const Report& report);
+
+/// EXR attributes "vkcppm.*": the members of `json`, then the scene's name and hash, what was done to it, device, driver
+/// and version.
+ExrAttributes attributes_of(nlohmann::ordered_json json, const SceneOptions& options, const Scene& scene,
+                            const Report& report);
+
 /// JSON as text; invalid UTF-8, which a file's names may hold, is replaced. indent: -1 for a single line.
 std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
 
 /// The version of the program.
 std::string version();
 
-/// The EXR's attributes, named "vkcppm.*": all settings as resolved, the scene's name and hash and what was done to
-/// it, what was rendered, device, driver and version. Nothing that differs between two runs of one seed on one device.
+/// The attributes of a rendered EXR: all settings as resolved and what was rendered. Nothing that differs between two
+/// runs of one seed on one device.
 ExrAttributes exr_attributes(const SceneOptions& options, const Scene& scene, const Rendering& rendering);
 
-/// The text of --stats: a JSON object with passes [{name, calls, device_seconds}], totals, settings, scene, device,
-/// driver and version; with a reference also its file, what the render was to stop at, and the curve.
+/// The text of --stats: a JSON object with version, scene, settings and the report; with a reference also its file, what
+/// the render was to stop at, and the curve.
 std::string stats_json(const RenderOptions& options, const Scene& scene, const Rendering& rendering);
 
 /// True where the last point of the curve is at or below the error to stop at. Asserts that the render was measured.

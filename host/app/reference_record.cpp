@@ -1,6 +1,7 @@
 #include "app/reference_record.h"
 
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -51,19 +52,7 @@ float rounded_error(float error) {
 ExrAttributes reference_attributes(const ReferenceOptions& options, const Scene& scene, const Reference& reference) {
     Json json = reference_settings_json(reference.settings);
     json.update(error_json(reference));
-    const Json where = scene_json(options.scene, scene);
-    json["scene"] = scene.file.filename().string();
-    json["scene_hash"] = where["hash"];
-    if (options.scene.environment) json["environment"] = options.scene.environment->filename().string();
-    json["thin_glass"] = where["thin_glass"];
-    json["device"] = reference.report.device;
-    json["driver"] = reference.report.driver;
-    json["version"] = version();
-    ExrAttributes attributes;
-    for (const auto& [name, value] : json.items()) {
-        attributes.emplace_back("vkcppm." + name, value.is_string() ? value.get<std::string>() : json_text(value));
-    }
-    return attributes;
+    return attributes_of(std::move(json), options.scene, scene, reference.report);
 }
 
 ExrChannels reference_channels(const Reference& reference) {
@@ -82,20 +71,7 @@ std::string reference_json(const ReferenceOptions& options, const Scene& scene, 
     json["settings"] = reference_settings_json(reference.settings);
     json["error"] = error_json(reference);
     if (stats) {
-        const Report& report = reference.report;
-        json["device"] = report.device;
-        json["driver"] = report.driver;
-        json["totals"] = {{"rays", report.rays},
-                          {"wall_seconds", report.wall_seconds},
-                          {"cpu_seconds", report.cpu_seconds},
-                          {"setup_seconds", report.setup_seconds},
-                          {"peak_memory_bytes", report.peak_memory_bytes},
-                          {"device_memory_bytes", report.device_memory_bytes}};
-        json["passes"] = Json::array();
-        for (const PassReport& pass : report.passes) {
-            json["passes"].push_back(
-                {{"name", pass.name}, {"calls", pass.calls}, {"device_seconds", pass.device_seconds}});
-        }
+        json.update(report_json(reference.report));
     }
     return json_text(json, 2) + "\n";
 }

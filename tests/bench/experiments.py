@@ -7,10 +7,12 @@ hash of the program, the scene, the reference and all options, and is not run ag
 
 import argparse
 import hashlib
+import itertools
 import json
 import math
 import os
 import pathlib
+import statistics
 import subprocess
 import sys
 import textwrap
@@ -80,7 +82,11 @@ def race(options, scene, **changes):
 
 
 class Race:
-    """What a race.json says by one metric."""
+    """What a race.json says by one metric, of errors without the noise of the reference.
+
+    A picture and its reference have noise of their own, so squared errors add: the reference tells by its standard
+    errors what it adds to a metric, and that is taken off. What is left below a quarter of it is not known.
+    """
 
     def __init__(self, data, metric):
         if data["interrupted"]:
@@ -89,18 +95,42 @@ class Race:
         self.entrants = {entrant["name"]: entrant for entrant in data["entrants"]}
         self.metric = metric
         self.title = {m["name"]: m["title"] for m in data["metrics"]}[metric]
+        self.noise = float(data["reference"]["attributes"].get(f"vkcppm.{metric}", 0.0))
 
-    def _measured(self, name):
-        return self.entrants[name]["metrics"][self.metric]
+    def _curves(self, name, axis="iterations"):
+        """[[(x, error)]] of every seed, as long as the error is known."""
+        curves = []
+        for run in self.entrants[name]["runs"]:
+            points = [(point[axis], point[self.metric] - self.noise) for point in run["curve"]]
+            curves.append(list(itertools.takewhile(lambda p: p[1] > 0.25 * self.noise, points)))
+        return curves
+
+    def _over_seeds(self, values):
+        """Geometric mean over the seeds and, from two on, the range."""
+        return {"mean": geometric_mean(values), "low": min(values) if len(values) > 1 else None,
+                "high": max(values) if len(values) > 1 else None}
 
     def final(self, name):
-        """{mean, low, high} of the error at the end; low and high are None for one seed."""
-        return self._measured(name)["final"]
+        """{mean, low, high} of the last error that is known."""
+        return self._over_seeds([curve[-1][1] for curve in self._curves(name)])
 
-    def equal(self, name, axis):
-        """{mean, low, high} of the iterations or seconds to the baseline's last error; None where not all seeds
-        come down to it."""
-        return self._measured(name)["equal_" + axis]["at"]
+    def equal(self, name, baseline, axis):
+        """{mean, low, high} of the iterations or seconds to the baseline's last error, interpolated log-log; None where
+        not all seeds come down to it."""
+        found = []
+        for curve, target in zip(self._curves(name, axis), self._curves(baseline, axis)):
+            level = target[-1][1]
+            at = next((i for i, (_, error) in enumerate(curve) if error <= level), None)
+            if name == baseline:
+                found.append(target[-1][0])
+            elif at is None:
+                return None
+            elif at == 0:
+                found.append(curve[0][0])
+            else:
+                (x0, y0), (x1, y1) = curve[at - 1], curve[at]
+                found.append(x0 * (x1 / x0) ** (math.log(y0 / level) / math.log(y0 / y1)))
+        return self._over_seeds(found)
 
     def took(self, name, axis):
         """Mean over the seeds of the iterations, or the seconds on the clock, at the end."""
@@ -109,12 +139,14 @@ class Race:
 
     def curve(self, name, axis="iterations"):
         """[{x, mean, low, high}] of the error."""
-        return self._measured(name)["against_" + axis]["points"]
+        return [{"x": geometric_mean([p[0] for p in points]), **self._over_seeds([p[1] for p in points])}
+                for points in zip(*self._curves(name, axis))]
 
     def slope(self, name, axis="iterations"):
-        """Of the curve's last factor of ten, log-log; None where there is none."""
-        slope = self._measured(name)["against_" + axis]["slope"]
-        return slope and slope["mean"]
+        """Of the curve's last factor of ten, log-log, by least squares; None where there is none."""
+        curve = self.curve(name, axis)
+        points = [(math.log(p["x"]), math.log(p["mean"])) for p in curve if 10 * p["x"] >= curve[-1]["x"]]
+        return statistics.linear_regression(*zip(*points)).slope if len(points) > 1 else None
 
     def colour(self, name):
         return self.entrants[name]["colour"]
@@ -147,10 +179,11 @@ def conditions(options, some_race):
                             text=True).stdout.strip()
     data = some_race.data
     settings = data["entrants"][0]["settings"]
+    noise = f" ({some_race.noise:.3g} in {pathlib.Path(data['scene']['file']).stem})" if some_race.noise else ""
     return paragraph(f"""Commit: {commit}. Device: {data['driver']}. {data['width']}x{data['height']} pixels,
         {settings['photons']:,} paths an iteration, {data['iterations']:,} iterations, k_NN = {settings['knn']},
         {options.seeds} {'seed' if options.seeds == 1 else 'seeds'}. Error: {some_race.title}, against the scenes'
-        references. Seconds are those of the passes, by the device's timestamps; estimators take turns.""")
+        references, whose own noise is taken off{noise}. Seconds are those of the passes, by the device's timestamps; estimators take turns.""")
 
 
 def write_figure(options, name, text):

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "cli/program.h"
 #include "core/image.h"
 #include "core/metrics.h"
 #include "io/exr.h"
@@ -28,11 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-using Words = std::vector<std::string>;
-
-std::string scene(const std::string& name) {
-    return (fs::path(VKCPPM_SOURCE_DIR) / "scenes" / (name + ".gltf")).string();
-}
+using namespace test;
 
 std::string shown(const Words& words) {
     std::string text = "vkcppm";
@@ -42,27 +39,8 @@ std::string shown(const Words& words) {
     return text;
 }
 
-std::vector<std::string> lines_of(const std::string& text) {
-    std::vector<std::string> lines;
-    std::istringstream stream(text);
-    for (std::string line; std::getline(stream, line);) {
-        lines.push_back(line);
-    }
-    return lines;
-}
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
-/// The program's runs, each test in a folder of its own.
-class Cli : public testing::Test {
+class Cli : public ProgramTest {
 protected:
-    test::ProcessResult run(Words words) const {
-        words.insert(words.begin(), VKCPPM_PROGRAM);
-        return test::run_process(words, folder_.path());
-    }
-
     /// A picture that takes a moment: 16x12 pixels, two iterations of 500 paths.
     test::ProcessResult render(Words more) const {
         Words words{scene("caustic"), "--size", "16x12", "--iterations", "2", "--photons", "500", "--quiet"};
@@ -79,31 +57,7 @@ protected:
         const ExrAttributes list = read_exr_attributes(folder_ / name);
         return {list.begin(), list.end()};
     }
-
-    test::TemporaryFolder folder_;
 };
-
-void expect_done(const test::ProcessResult& result) {
-    EXPECT_FALSE(result.timed_out);
-    EXPECT_EQ(result.signal, 0);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-}
-
-/// Exit code `code`, nothing on standard output, and one line of error that holds all of `told`.
-void expect_failure(const test::ProcessResult& result, int code, const Words& told, const std::string& what) {
-    SCOPED_TRACE(what);
-    EXPECT_FALSE(result.timed_out);
-    EXPECT_EQ(result.signal, 0);
-    EXPECT_EQ(result.exit_code, code) << result.err;
-    EXPECT_EQ(result.out, "");
-    const std::vector<std::string> lines = lines_of(result.err);
-    const auto is_error = [](const std::string& line) { return line.starts_with("error: "); };
-    ASSERT_EQ(std::count_if(lines.begin(), lines.end(), is_error), 1) << result.err;
-    EXPECT_TRUE(is_error(lines.back())) << result.err;
-    for (const std::string& part : told) {
-        EXPECT_TRUE(contains(lines.back(), part)) << "'" << part << "' is not in: " << lines.back();
-    }
-}
 
 // ---- Help, version and the listing commands
 

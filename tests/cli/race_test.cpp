@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "cli/program.h"
 #include "io/exr.h"
 #include "support/files.h"
 #include "support/process.h"
@@ -21,21 +22,10 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-using Words = std::vector<std::string>;
+using namespace test;
 
-std::string scene(const std::string& name) {
-    return (fs::path(VKCPPM_SOURCE_DIR) / "scenes" / (name + ".gltf")).string();
-}
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-class RaceCli : public testing::Test {
+class RaceCli : public ProgramTest {
 protected:
-    test::ProcessResult run(Words words) const {
-        words.insert(words.begin(), VKCPPM_PROGRAM);
-        return test::run_process(words, folder_.path());
-    }
-
     /// A race that takes a moment, into `out`.
     test::ProcessResult race(const std::string& out, Words more) const {
         Words words{"race", scene("torus"), "-o", out, "--photons", "1000", "--iterations", "5", "--quiet"};
@@ -66,20 +56,7 @@ protected:
     }
 
     Json json(const std::string& file) const { return Json::parse(test::read_bytes(folder_ / file)); }
-
-    test::TemporaryFolder folder_;
 };
-
-/// Exit code `code` and one line of error with all of `told`.
-void expect_failure(const test::ProcessResult& result, int code, const Words& told) {
-    EXPECT_EQ(result.exit_code, code) << result.err;
-    EXPECT_EQ(result.out, "");
-    const std::size_t at = result.err.find("error: ");
-    ASSERT_NE(at, std::string::npos) << result.err;
-    for (const std::string& part : told) {
-        EXPECT_TRUE(contains(result.err.substr(at), part)) << part << "\n" << result.err;
-    }
-}
 
 TEST_F(RaceCli, TwiceGivesTheSameCurvesAndPictures) {
     make_reference();

@@ -8,16 +8,10 @@
 
 #include <glm/geometric.hpp>
 
+#include "support/materials.h"
+
 namespace vkcppm::test {
 namespace {
-
-/// Pure Lambert: no metal, no coat.
-Material lambert() {
-    Material material;
-    material.metallic = 0.0f;
-    material.specular = 0.0f;
-    return material;
-}
 
 std::uint32_t add_material(Scene& scene, const Material& material) {
     scene.materials.push_back(material);
@@ -37,36 +31,19 @@ void add_walls(Scene& scene, std::uint32_t left, std::uint32_t right, std::uint3
 
 }  // namespace
 
-std::uint32_t add_diffuse(Scene& scene, const glm::vec3& albedo) {
-    Material material = lambert();
-    material.base_color = albedo;
-    return add_material(scene, material);
-}
+std::uint32_t add_diffuse(Scene& scene, const glm::vec3& albedo) { return add_material(scene, lambert(albedo)); }
 
 std::uint32_t add_emitter(Scene& scene, const glm::vec3& radiance, bool double_sided) {
-    Material material = lambert();
-    material.base_color = glm::vec3(0.0f);
-    material.emission = radiance;
+    Material material = emitter(radiance);
     material.double_sided = double_sided;
     return add_material(scene, material);
 }
 
 std::uint32_t add_mirror(Scene& scene, const glm::vec3& reflectance) {
-    Material material;
-    material.base_color = reflectance;
-    material.roughness = 0.0f;
-    return add_material(scene, material);
+    return add_material(scene, mirror(reflectance));
 }
 
-std::uint32_t add_glass(Scene& scene, float ior) {
-    Material material;
-    material.metallic = 0.0f;
-    material.roughness = 0.0f;
-    material.transmission = 1.0f;
-    material.thickness = 1.0f;
-    material.ior = ior;
-    return add_material(scene, material);
-}
+std::uint32_t add_glass(Scene& scene, float ior) { return add_material(scene, glass(ior)); }
 
 void add_triangle(Scene& scene, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, std::uint32_t material) {
     const auto first = std::uint32_t(scene.positions.size());

@@ -13,6 +13,7 @@
 #include "reference/fresnel.h"
 #include "reference/path_tracer.h"
 #include "reference/surface.h"
+#include "support/materials.h"
 #include "support/picture_mean.h"
 #include "support/shapes.h"
 
@@ -68,23 +69,6 @@ Material frosted_pane() {
     return material;
 }
 
-/// Solid, smooth and without colour.
-Material solid(float ior) {
-    Material material;
-    material.metallic = material.roughness = 0.0f;
-    material.transmission = material.thickness = 1.0f;
-    material.ior = ior;
-    return material;
-}
-
-Material emitter(const glm::vec3& radiance) {
-    Material material;
-    material.base_color = glm::vec3(0.0f);
-    material.metallic = material.specular = 0.0f;
-    material.emission = radiance;
-    return material;
-}
-
 PathTracing look(const Scene& scene, std::uint32_t samples) {
     return path_trace(scene, {.size = {8, 8}, .samples = samples});
 }
@@ -118,11 +102,11 @@ TEST(ReferenceMaterials, PlanesInAConstantEnvironmentShowTheirAlbedo) {
 }
 
 TEST(ReferenceMaterials, SolidGlassVanishesInAConstantEnvironment) {
-    Material dispersive = solid(1.5f);
+    Material dispersive = test::glass(1.5f);
     dispersive.dispersion = 1.0f;
-    Material rough_air = solid(1.0f);
+    Material rough_air = test::glass(1.0f);
     rough_air.roughness = 0.5f;
-    for (const Material& material : {solid(1.5f), dispersive, rough_air}) {
+    for (const Material& material : {test::glass(1.5f), dispersive, rough_air}) {
         Scene scene;
         test::add_sphere(scene, origin, 1.0, 2, add(scene, material), false);
         test::add_camera(scene, {0, 0, 4}, origin, 0.4);
@@ -169,12 +153,12 @@ TEST(ReferenceMaterials, ColouredSlabAbsorbsAlongItsLength) {
     // Normal incidence, all reflections within: T = (1 - R)^2 a / (1 - R^2 a^2).
     const glm::dvec3 color(0.8, 0.4, 0.1);
     for (const float ior : {1.0f, 1.5f}) {
-        Material material = solid(ior);
+        Material material = test::glass(ior);
         material.attenuation_color = glm::vec3(color);
         material.attenuation_distance = 0.5f;
         Scene scene;
         test::add_box(scene, {-1, -1, -0.25}, {1, 1, 0.5}, add(scene, material), false);
-        add_level(scene, -1.0, 5.0, add(scene, emitter(glm::vec3(2.0f))));
+        add_level(scene, -1.0, 5.0, add(scene, test::emitter(glm::vec3(2.0f))));
         test::add_camera(scene, {0, 0, 2}, origin, narrow);
         const glm::dvec3 absorbed = glm::pow(color, glm::dvec3(0.75 / 0.5));
         const double r = std::pow((ior - 1.0) / (ior + 1.0), 2);
@@ -186,12 +170,12 @@ TEST(ReferenceMaterials, ColouredSlabAbsorbsAlongItsLength) {
 
 TEST(ReferenceMaterials, MediumAbsorbsBeforeWhatStandsInIt) {
     // A half space of coloured air: the camera outside, an emitter inside at a depth of 0.6, seen at an angle.
-    Material material = solid(1.0f);
+    Material material = test::glass(1.0f);
     material.attenuation_color = {0.5f, 0.25f, 0.9f};
     material.attenuation_distance = 1.0f;
     Scene scene;
     add_level(scene, 0.0, 10.0, add(scene, material));
-    add_level(scene, -0.6, 10.0, add(scene, emitter(glm::vec3(1.0f))));
+    add_level(scene, -0.6, 10.0, add(scene, test::emitter(glm::vec3(1.0f))));
     test::add_camera(scene, {0.6, 0.0, 0.8}, origin, narrow);
     expect_mean(look(scene, 2), glm::pow(glm::dvec3(material.attenuation_color), glm::dvec3(0.6 / 0.8)), 1e-4);
 }
@@ -200,13 +184,13 @@ TEST(ReferenceMaterials, ConnectionsInAMediumAreAbsorbed) {
     // Floor and lamp both inside: radiance from the point below a square lamp by quadrature over it.
     const double half = 0.5, height = 0.8;
     const glm::dvec3 color(0.5, 0.25, 0.9);
-    Material material = solid(1.0f);
+    Material material = test::glass(1.0f);
     material.attenuation_color = glm::vec3(color);
     material.attenuation_distance = 1.0f;
     Scene scene;
     add_level(scene, 1.0, 10.0, add(scene, material));
     add_level(scene, 0.0, 10.0, test::add_diffuse(scene, glm::vec3(0.5f)));
-    add_level(scene, height, half, add(scene, emitter(glm::vec3(3.0f))), false);
+    add_level(scene, height, half, add(scene, test::emitter(glm::vec3(3.0f))), false);
     test::add_camera(scene, {2.4, 0.0, 1.8}, origin, narrow);
     glm::dvec3 irradiance(0.0);
     constexpr int steps = 200;
@@ -224,13 +208,13 @@ TEST(ReferenceMaterials, ConnectionsInAMediumAreAbsorbed) {
 
 TEST(ReferenceMaterials, HalfAPlaneHalvesWhatIsBehind) {
     for (const bool mask : {false, true}) {
-        Material veil = emitter(glm::vec3(0.4f));
+        Material veil = test::emitter(glm::vec3(0.4f));
         veil.alpha = mask ? Material::Alpha::mask : Material::Alpha::blend;
         veil.opacity = 0.5f;
         veil.alpha_cutoff = 0.6f;
         Scene scene;
         add_level(scene, 0.0, 1.0, add(scene, veil));
-        add_level(scene, -1.0, 5.0, add(scene, emitter(glm::vec3(2.0f))));
+        add_level(scene, -1.0, 5.0, add(scene, test::emitter(glm::vec3(2.0f))));
         test::add_camera(scene, {0, 0, 2}, origin, narrow);
         SCOPED_TRACE(mask);
         expect_mean(look(scene, 1000), glm::dvec3(mask ? 2.0 : 1.2), 0.003);
@@ -240,13 +224,13 @@ TEST(ReferenceMaterials, HalfAPlaneHalvesWhatIsBehind) {
 TEST(ReferenceMaterials, BlendedPlanesPassShadowRays) {
     // A lamp over a Lambert floor behind two black veils of 0.5 and one that its mask takes away; the camera is below
     // the veils. The lamp itself is half there.
-    Material veil = emitter(glm::vec3(0.0f));
+    Material veil = test::emitter(glm::vec3(0.0f));
     veil.alpha = Material::Alpha::blend;
     veil.opacity = 0.5f;
     Material gone = veil;
     gone.alpha = Material::Alpha::mask;
     gone.alpha_cutoff = 0.75f;
-    Material lamp = emitter(glm::vec3(6.0f));
+    Material lamp = test::emitter(glm::vec3(6.0f));
     lamp.alpha = Material::Alpha::blend;
     lamp.opacity = 0.5f;
     Scene scene;
@@ -270,7 +254,7 @@ TEST(ReferenceMaterials, BlendedPlanesPassShadowRays) {
 TEST(ReferenceMaterials, ThinPanePassesStraightOn) {
     const double angle = 1.0, cosine = std::cos(angle);
     const glm::dvec3 behind(1.0, 1.0, 0.4), front(0.2, 1.0, 1.6);
-    Material pane = solid(1.5f);
+    Material pane = test::glass(1.5f);
     pane.thickness = 0.0f;
     pane.base_color = {0.5f, 0.9f, 1.0f};
     for (const bool from_front : {true, false}) {
@@ -278,8 +262,8 @@ TEST(ReferenceMaterials, ThinPanePassesStraightOn) {
         add_level(scene, 0.0, 1.0, add(scene, pane), from_front);
         // Narrow enough that only the straight way ends on it.
         const glm::dvec3 eye(std::sin(angle), 0.0, cosine);
-        add_level(scene, 2.0, 50.0, add(scene, emitter(glm::vec3(front))), false);
-        const std::uint32_t target = add(scene, emitter(glm::vec3(behind)));
+        add_level(scene, 2.0, 50.0, add(scene, test::emitter(glm::vec3(front))), false);
+        const std::uint32_t target = add(scene, test::emitter(glm::vec3(behind)));
         test::add_quad(scene, -eye / cosine + glm::dvec3(-0.01, -0.01, 0.0), {0.02, 0, 0}, {0, 0.02, 0}, target);
         test::add_camera(scene, eye, origin, narrow);
         const double r = fresnel_dielectric(cosine, 1.5);
@@ -289,7 +273,7 @@ TEST(ReferenceMaterials, ThinPanePassesStraightOn) {
 }
 
 TEST(ReferenceMaterials, GlassBlocksPunctualLights) {
-    Material pane = solid(1.5f);
+    Material pane = test::glass(1.5f);
     pane.thickness = 0.0f;
     Scene scene;
     add_level(scene, 0.0, 1.0, test::add_diffuse(scene, glm::vec3(1.0f)));
@@ -327,7 +311,7 @@ TEST(ReferenceMaterials, RoughSurfacesUnderASquareLight) {
         Scene scene;
         add_level(scene, 0.0, 1.0, add(scene, material));
         const glm::dvec3 corner(-1.3 - half, -0.3 - half, height);
-        test::add_quad(scene, corner, {0, 2.0 * half, 0}, {2.0 * half, 0, 0}, add(scene, emitter(glm::vec3(5.0f))));
+        test::add_quad(scene, corner, {0, 2.0 * half, 0}, {2.0 * half, 0, 0}, add(scene, test::emitter(glm::vec3(5.0f))));
         test::add_camera(scene, slanted_eye, origin, narrow);
         const Bsdf bsdf = surface_of(scene).bsdf;
         glm::dvec3 expected(0.0);
@@ -347,7 +331,7 @@ TEST(ReferenceMaterials, RoughSurfacesUnderASquareLight) {
 TEST(ReferenceMaterials, HalfOfAnEmitterIsTexturedBlack) {
     const double half = 0.5, height = 1.25;
     Scene scene;
-    Material lamp = emitter({7.0f, 3.0f, 1.0f});
+    Material lamp = test::emitter({7.0f, 3.0f, 1.0f});
     lamp.emissive_texture = Texture{};
     lamp.emissive_texture->nearest = true;
     scene.images.push_back({"half", {2, 1}, {255, 255, 255, 255, 0, 0, 0, 255}});
@@ -393,13 +377,13 @@ TEST(ReferenceMaterials, DispersionSpreadsColoursAtAnEdge) {
     // From the eye at 45 degrees into glass; light of 550 nm meets the floor of the half space at `edge`, shorter waves
     // before it. The floor is lit up to there: all of blue's wavelengths, half of green's, none of red's.
     const double sine = std::sqrt(0.5), depth = 1.0;
-    Material material = solid(1.5f);
+    Material material = test::glass(1.5f);
     material.dispersion = 1.0f;
     const double refracted = std::asin(sine / ior_at(1.5, 1.0, 550.0));
     const double edge = -depth * std::tan(refracted);
     Scene scene;
     add_level(scene, 0.0, 5.0, add(scene, material));
-    test::add_quad(scene, {edge, -1.0, -depth}, {1.0, 0, 0}, {0, 2.0, 0}, add(scene, emitter(glm::vec3(1.0f))));
+    test::add_quad(scene, {edge, -1.0, -depth}, {1.0, 0, 0}, {0, 2.0, 0}, add(scene, test::emitter(glm::vec3(1.0f))));
     test::add_camera(scene, {sine, 0.0, sine}, origin, 1e-6);
     const double transmitted = 1.0 - fresnel_dielectric(sine, 1.5);
     const auto result = path_trace(scene, {.size = {8, 8}, .samples = 4000});
@@ -432,7 +416,7 @@ TEST(ReferenceLens, RaysMeetWhereItIsSharp) {
 
 TEST(ReferenceLens, KeepsAUniformField) {
     Scene scene;
-    test::add_box(scene, glm::dvec3(-1.0), glm::dvec3(1.0), add(scene, emitter(glm::vec3(1.5f))), true);
+    test::add_box(scene, glm::dvec3(-1.0), glm::dvec3(1.0), add(scene, test::emitter(glm::vec3(1.5f))), true);
     test::add_camera(scene, {0.1, 0.2, 0.5}, origin, 1.0);
     const auto result = path_trace(scene, {.size = {8, 8}, .samples = 16, .aperture = 0.3, .focus_distance = 0.7});
     for (const glm::vec3& pixel : result.mean.rgb) EXPECT_EQ(pixel, glm::vec3(1.5f));
@@ -443,7 +427,7 @@ TEST(ReferenceLens, BlursAnEdgeByTheLensItself) {
     // beyond it: (acos t - t sqrt(1 - t^2)) / pi, t = 1/2.
     const double aperture = 0.4, edge = aperture / 4.0, t = 0.5;
     Scene scene;
-    test::add_quad(scene, {edge, -5.0, -2.0}, {5.0, 0, 0}, {0, 10.0, 0}, add(scene, emitter(glm::vec3(1.0f))));
+    test::add_quad(scene, {edge, -5.0, -2.0}, {5.0, 0, 0}, {0, 10.0, 0}, add(scene, test::emitter(glm::vec3(1.0f))));
     test::add_camera(scene, origin, {0, 0, -1}, narrow);
     expect_mean(path_trace(scene, {.size = {8, 8}, .samples = 1000, .aperture = aperture, .focus_distance = 1.0}),
                 glm::dvec3((std::acos(t) - t * std::sqrt(1.0 - t * t)) / pi), 0.01);

@@ -10,6 +10,7 @@
 
 #include "reference/fresnel.h"
 #include "reference/path_tracer.h"
+#include "support/materials.h"
 #include "support/picture_mean.h"
 
 namespace vkcppm::reference {
@@ -17,32 +18,11 @@ namespace {
 
 using std::numbers::pi;
 using test::expect_mean;
+using test::glass;
+using test::lambert;
+using test::mirror;
 
 constexpr double degree = pi / 180.0;
-
-Material lambert(const glm::vec3& reflectance, const glm::vec3& emission = glm::vec3(0.0f)) {
-    Material material;
-    material.base_color = reflectance;
-    material.metallic = 0.0f;
-    material.specular = 0.0f;
-    material.emission = emission;
-    return material;
-}
-
-Material mirror(const glm::vec3& tint) {
-    Material material;
-    material.base_color = tint;
-    material.roughness = 0.0f;
-    return material;
-}
-
-Material glass(float ior) {
-    Material material;
-    material.metallic = material.roughness = 0.0f;
-    material.transmission = material.thickness = 1.0f;
-    material.ior = ior;
-    return material;
-}
 
 /// Parallelogram center +- u +- v that faces along u x v.
 void add_quad(Scene& scene, const Material& material, glm::dvec3 center, glm::dvec3 u, glm::dvec3 v) {

@@ -1,0 +1,70 @@
+#pragma once
+// The built program under test: its runs, and what is expected of them.
+
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "support/process.h"
+#include "support/temporary_folder.h"
+
+namespace vkcppm::test {
+
+using Words = std::vector<std::string>;
+
+/// A scene of the project.
+inline std::string scene(const std::string& name) {
+    return (std::filesystem::path(VKCPPM_SOURCE_DIR) / "scenes" / (name + ".gltf")).string();
+}
+
+inline std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) {
+        lines.push_back(line);
+    }
+    return lines;
+}
+
+inline bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+/// Each test in a folder of its own.
+class ProgramTest : public testing::Test {
+protected:
+    ProcessResult run(Words words) const {
+        words.insert(words.begin(), VKCPPM_PROGRAM);
+        return run_process(words, folder_.path());
+    }
+
+    TemporaryFolder folder_;
+};
+
+inline void expect_done(const ProcessResult& result) {
+    EXPECT_FALSE(result.timed_out);
+    EXPECT_EQ(result.signal, 0);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+}
+
+/// Exit code `code`, nothing on standard output, and one line of error that holds all of `told`.
+inline void expect_failure(const ProcessResult& result, int code, const Words& told, const std::string& what = "") {
+    SCOPED_TRACE(what);
+    EXPECT_FALSE(result.timed_out);
+    EXPECT_EQ(result.signal, 0);
+    EXPECT_EQ(result.exit_code, code) << result.err;
+    EXPECT_EQ(result.out, "");
+    const std::vector<std::string> lines = lines_of(result.err);
+    const auto is_error = [](const std::string& line) { return line.starts_with("error: "); };
+    ASSERT_EQ(std::count_if(lines.begin(), lines.end(), is_error), 1) << result.err;
+    EXPECT_TRUE(is_error(lines.back())) << result.err;
+    for (const std::string& part : told) {
+        EXPECT_TRUE(contains(lines.back(), part)) << "'" << part << "' is not in: " << lines.back();
+    }
+}
+
+}  // namespace vkcppm::test
