@@ -56,7 +56,7 @@ void main() {
         }
         if ((FEATURES & FEATURE_SPLIT) != 0u) return;
         // A pixel that failed before will hardly find k photons nearby: it looks through its whole disc at once.
-        kept = Gathered(vec3(-1.0, 0.0, first ? min(cap, 1.5 * grid.cell) : cap), 0u);
+        kept = Gathered(vec3(-1.0, 0.0, first ? min(cap, grid.cell) : cap), 0u);
     } else {
         cursor = cursors[pixel];
         if (cursor.cell.x == CURSOR_DONE) return;
