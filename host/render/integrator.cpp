@@ -18,7 +18,6 @@ namespace vkcppm {
 namespace {
 
 constexpr std::uint32_t timed_launches = 2048;
-constexpr std::uint32_t workgroup = 64;
 constexpr std::uint32_t most_photons_per_lane = 64;
 constexpr std::uint32_t stride_invocations = 16384;    // of kernels that stride over their input
 constexpr std::uint32_t first_photon_capacity = 6;     // photons a path, before a render knows better
@@ -77,11 +76,6 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     digits_ = (key_bits + 7) / 8;
     digit_bits_ = (key_bits + digits_ - 1) / digits_;
 
-    if (scene.bvh.nodes.size() > std::size_t(1) << BVH_MAX_NODE_BITS) {
-        throw Error(ExitCode::out_of_device_memory,
-                    fmt::format("the scene's {} triangles need {} nodes of a BVH, the kernels hold {}",
-                                scene.triangles.size(), scene.bvh.nodes.size(), 1u << BVH_MAX_NODE_BITS));
-    }
     using Kind = Buffer::Kind;
     buffers_.allocate(BIND_PARAMS, "parameters", sizeof(gpu::Params), Kind::uniform);
     buffers_.allocate(BIND_STATUS, "status", sizeof(gpu::Status), Kind::storage);
@@ -116,6 +110,7 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     pixel.batch = float(settings.knn);  // B_1 = k_NN
     buffer(BIND_PIXELS).upload(std::vector<gpu::PixelState>(pixels_, pixel));
     compile(settings, scene.bvh, features);
+    warm_up();
 }
 
 /// Buffers whose size follows the number of photons that a lane can store; again when a render needs more.
@@ -134,19 +129,25 @@ void Integrator::allocate_photons() {
 }
 
 void Integrator::compile(const Settings& settings, const Bvh& bvh, std::uint32_t features) {
-    const Specialization specialization = {
-        {SPEC_WORKGROUP, workgroup},       {SPEC_STACK, bvh.stack},
-        {SPEC_ESTIMATOR, find_estimator(settings.estimator).id},
-        {SPEC_RINGS, settings.rings},      {SPEC_SECTORS, settings.sectors},
-        {SPEC_FEATURES, features},         {SPEC_DIGIT_BITS, digit_bits_},
-        {SPEC_NODE_BITS, std::uint32_t(std::bit_width(bvh.nodes.size() - 1))},
-    };
+    Specialization specialization = scene_specialization(bvh, features);
+    specialization.merge(Specialization{{SPEC_ESTIMATOR, find_estimator(settings.estimator).id},
+                                        {SPEC_RINGS, settings.rings},
+                                        {SPEC_SECTORS, settings.sectors},
+                                        {SPEC_DIGIT_BITS, digit_bits_}});
     for (const KernelModule& module : kernel_modules()) {
         const std::string name(module.name);
         if (name == "path") continue;  // the path tracer's
         kernels_.emplace(name, Kernel(device_, bindings_, name, module.spirv, specialization));
         passes_.push_back({name, 0, 0.0});
     }
+}
+
+/// Some drivers compile a kernel when it first runs. Each runs once for an iteration that is not due, which it leaves as
+/// it is, so that no time of compiling is on the clock.
+void Integrator::warm_up() {
+    commands_.begin();
+    for (const auto& [name, kernel] : kernels_) launch(name, 1, {.iteration = ~0u, .round = 0, .last_round = 0, .offset = 0, .count = 0});
+    commands_.finish();
 }
 
 // The algorithm box: every line is one pass over its buffers, each after the one before it.

@@ -65,6 +65,7 @@ private:
 
     void allocate_photons();
     void compile(const Settings& settings, const Bvh& bvh, std::uint32_t features);
+    void warm_up();
     void iterate(std::uint32_t iteration, Pass from, std::uint32_t first_round);
     void launch(const std::string& kernel, std::uint64_t invocations, const gpu::Launch& push);
     void launch_rounds(const std::string& kernel, std::uint64_t invocations, Pass pass, std::uint32_t iteration,

@@ -11,13 +11,12 @@ namespace vkcppm {
 namespace {
 
 constexpr std::uint32_t timed_launches = 64;
-constexpr std::uint32_t workgroup = 64;
 
 Specialization specialize(const FlatScene& scene, const Settings& settings, PathTracer::Light light) {
     std::uint32_t features = bits_of(scene.features) | bits_of(features_of(settings));
     features &= ~(FEATURE_AOVS | FEATURE_SPLIT);
     if (light == PathTracer::Light::split) features |= FEATURE_SPLIT;
-    return {{SPEC_WORKGROUP, workgroup}, {SPEC_STACK, scene.bvh.stack}, {SPEC_FEATURES, features}};
+    return scene_specialization(scene.bvh, features);
 }
 
 }  // namespace

@@ -1,8 +1,12 @@
 #include "render/scene_buffers.h"
 
+#include <bit>
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
+
+#include "core/error.h"
 #include "render/features.h"
 #include "shared/bindings.h"
 
@@ -25,6 +29,11 @@ void set_camera(gpu::Params& params, const Camera& camera, const SceneFrame& fra
 
 SceneBuffers::SceneBuffers(Device& device, Bindings& bindings, const FlatScene& scene)
     : device_(device), bindings_(bindings) {
+    if (scene.bvh.nodes.size() > std::size_t(1) << BVH_MAX_NODE_BITS) {
+        throw Error(ExitCode::out_of_device_memory,
+                    fmt::format("the scene's {} triangles need {} nodes of a BVH, the kernels hold {}",
+                                scene.triangles.size(), scene.bvh.nodes.size(), 1u << BVH_MAX_NODE_BITS));
+    }
     using Kind = Buffer::Kind;
     upload(BIND_NODES, "bvh nodes", scene.bvh.nodes, Kind::uint_texels);
     upload(BIND_TRIANGLES, "triangles", scene.triangles, Kind::float_texels);
@@ -44,6 +53,13 @@ void SceneBuffers::allocate(std::uint32_t binding, const std::string& name, std:
     buffers_.erase(binding);
     buffers_.emplace(binding, Buffer(device_, name, bytes, kind));
     bindings_.bind(binding, buffers_.at(binding));
+}
+
+Specialization scene_specialization(const Bvh& bvh, std::uint32_t features) {
+    return {{SPEC_WORKGROUP, workgroup},
+            {SPEC_STACK, bvh.stack},
+            {SPEC_NODE_BITS, std::uint32_t(std::bit_width(bvh.nodes.size() - 1))},
+            {SPEC_FEATURES, features}};
 }
 
 bool splits_near_lamps(const FlatScene& scene) {

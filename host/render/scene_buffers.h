@@ -42,6 +42,12 @@ private:
     std::map<std::uint32_t, Buffer> buffers_;
 };
 
+/// Invocations of a work group.
+inline constexpr std::uint32_t workgroup = 64;
+
+/// SPEC_* of every kernel that traces rays. features: FEATURE_*.
+Specialization scene_specialization(const Bvh& bvh, std::uint32_t features);
+
 /// The part of the scene's radius from a lamp within which a surface is near it, where light is split.
 inline constexpr double near_lamp = 0.04;
 
