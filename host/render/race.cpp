@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cassert>
-#include <charconv>
-#include <chrono>
 #include <memory>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/process.h"
 #include "render/flatten.h"
 #include "render/integrator.h"
 #include "render/render.h"
@@ -20,8 +19,6 @@ namespace {
 
 constexpr double submission_seconds = 0.1;  // a turn aims at this: entrants alternate often, overheads stay small
 constexpr std::uint32_t max_batch = 32;     // iterations in one turn
-
-using Clock = std::chrono::steady_clock;
 
 /// sums [pixels], empty at first.
 void add_squared_error(std::vector<double>& sums, const Image& image, const Image& reference) {
@@ -39,10 +36,8 @@ public:
     Lane(Device& device, const FlatScene& flat, const Scene& scene, RaceRun& run, std::uint32_t seed)
         : run_(run), settings_(run.entrant.settings) {
         settings_.seed = seed;
-        std::size_t camera = 0;
-        std::from_chars(settings_.camera.data(), settings_.camera.data() + settings_.camera.size(), camera);
         try {
-            integrator_ = std::make_unique<Integrator>(device, flat, scene.cameras.at(camera), settings_);
+            integrator_ = std::make_unique<Integrator>(device, flat, camera_of(settings_, scene), settings_);
         } catch (const Error& error) {
             if (error.code() != ExitCode::out_of_device_memory) throw;
             throw Error(error.code(), fmt::format("entrant '{}': {}; the entrants before it hold {} of the device's {} "
@@ -152,7 +147,7 @@ RaceResult run_race(const Scene& scene, const RaceSettings& race, const Image& r
     if (sppm != race.entrants.end()) result.baseline = std::size_t(sppm - race.entrants.begin());
 
     const FlatScene flat = flatten(scene);
-    const Clock::time_point begin = Clock::now();
+    const double begin = wall_now();
     for (std::uint32_t s = 0; s < race.seeds && !result.interrupted; ++s) {
         const std::uint32_t seed = race.entrants.front().settings.seed + s;
         std::vector<Lane> lanes;
@@ -160,8 +155,7 @@ RaceResult run_race(const Scene& scene, const RaceSettings& race, const Image& r
         const auto progress = [&] {
             double done = s;
             for (const Lane& lane : lanes) done += lane.done() / double(lanes.size());
-            const double wall = std::chrono::duration<double>(Clock::now() - begin).count();
-            return RaceProgress{s, race.seeds, done / race.seeds, wall, result.runs};
+            return RaceProgress{s, race.seeds, done / race.seeds, wall_now() - begin, result.runs};
         };
         while (Lane* lane = next_lane(lanes)) {
             lane->take_turn(reference);

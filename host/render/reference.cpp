@@ -1,7 +1,6 @@
 #include "render/reference.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <memory>
 
@@ -269,9 +268,7 @@ Reference make_reference(const Scene& scene, const ReferenceSettings& wanted, De
     Reference result;
     result.settings = resolve(wanted, scene);
     const Settings& settings = result.settings.render;
-    std::size_t camera_index = 0;
-    std::from_chars(settings.camera.data(), settings.camera.data() + settings.camera.size(), camera_index);
-    const Camera& camera = scene.cameras.at(camera_index);
+    const Camera& camera = camera_of(settings, scene);
     const FlatScene flat = flatten(scene);
     Paths paths(device, flat, camera, result.settings);
     std::unique_ptr<Caustics> caustics;

@@ -1,7 +1,6 @@
 #include "render/render.h"
 
 #include <algorithm>
-#include <charconv>
 
 #include <fmt/format.h>
 
@@ -64,9 +63,7 @@ Rendering render(const Scene& scene, const Settings& wanted, Device& device, con
     result.settings = resolve_settings(wanted, scene);
     const Settings& settings = result.settings;
     const FlatScene flat = flatten(scene);
-    std::size_t camera = 0;
-    std::from_chars(settings.camera.data(), settings.camera.data() + settings.camera.size(), camera);
-    Integrator integrator(device, flat, scene.cameras.at(camera), settings);
+    Integrator integrator(device, flat, camera_of(settings, scene), settings);
     result.report.setup_seconds = wall_now() - setup;
 
     Stopwatch watch;

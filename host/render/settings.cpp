@@ -109,4 +109,10 @@ Settings resolve_settings(const Settings& settings, const Scene& scene) {
     return resolved;
 }
 
+const Camera& camera_of(const Settings& settings, const Scene& scene) {
+    std::size_t index = 0;
+    std::from_chars(settings.camera.data(), settings.camera.data() + settings.camera.size(), index);
+    return scene.cameras.at(index);
+}
+
 }  // namespace vkcppm
