@@ -143,10 +143,10 @@ class Race:
                 for points in zip(*self._curves(name, axis))]
 
     def slope(self, name, axis="iterations"):
-        """Of the curve's last factor of ten, log-log, by least squares; None where there is none."""
+        """Of the curve's last factor of ten, log-log, by least squares, as text; a dash where there is none."""
         curve = self.curve(name, axis)
         points = [(math.log(p["x"]), math.log(p["mean"])) for p in curve if 10 * p["x"] >= curve[-1]["x"]]
-        return statistics.linear_regression(*zip(*points)).slope if len(points) > 1 else None
+        return f"{statistics.linear_regression(*zip(*points)).slope:.2f}" if len(points) > 1 else "–"
 
     def colour(self, name):
         return self.entrants[name]["colour"]
