@@ -69,7 +69,7 @@ void main() {
     int steps = int(params.step_budget);
     CellBox box;
     Walk walk;
-    while (true) {
+    while (steps > 0) {
         box = cell_box(position, kept.flux.z);
         float reach2 = kept.flux.z * kept.flux.z;
         FOR_PHOTONS(box, cursor, walk, steps, {
