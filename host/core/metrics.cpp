@@ -13,7 +13,6 @@
 namespace vkcppm {
 namespace {
 
-constexpr double relative_epsilon = 0.01;  // keeps black pixels of the reference from deciding relMSE
 constexpr std::size_t trimmed_one_in = 1000;
 
 bool finite(const glm::vec3& pixel) {
@@ -70,7 +69,7 @@ Comparison compare(const Image& image, const Image& reference) {
             image_sum[c] += x;
             reference_sum[c] += r;
             square += squared / 3.0;
-            relative += squared / (r * r + relative_epsilon) / 3.0;
+            relative += squared / (r * r + relmse_epsilon) / 3.0;
             ratio += size > 0.0 ? std::abs(x - r) / size / 3.0 : 0.0;
             level += step * step / 3.0;
         }

@@ -12,6 +12,9 @@
 
 namespace vkcppm {
 
+/// What relMSE adds to r^2, so that black pixels of the reference do not decide it.
+inline constexpr double relmse_epsilon = 0.01;
+
 /// A mean of squared or relative errors over pixels.
 struct Measure {
     double all = 0.0;

@@ -142,11 +142,12 @@ void Integrator::compile(const Settings& settings, const Bvh& bvh, std::uint32_t
     }
 }
 
-/// Some drivers compile a kernel when it first runs. Each runs once for an iteration that is not due, which it leaves as
-/// it is, so that no time of compiling is on the clock.
+/// Some drivers compile a kernel when it first runs. Each runs once for an iteration that is not due, which leaves all
+/// as it is, so that no time of compiling is on the clock.
 void Integrator::warm_up() {
     commands_.begin();
-    for (const auto& [name, kernel] : kernels_) launch(name, 1, {.iteration = ~0u, .round = 0, .last_round = 0, .offset = 0, .count = 0});
+    const gpu::Launch not_due{.iteration = ~0u, .round = 0, .last_round = 0, .offset = 0, .count = 0};
+    for (const auto& [name, kernel] : kernels_) launch(name, 1, not_due);
     commands_.finish();
 }
 

@@ -12,13 +12,11 @@
 #include "render/flatten.h"
 #include "render/integrator.h"
 #include "render/render.h"
+#include "render/submission.h"
 #include "vk/device.h"
 
 namespace vkcppm {
 namespace {
-
-constexpr double submission_seconds = 0.1;  // a turn aims at this: entrants alternate often, overheads stay small
-constexpr std::uint32_t max_batch = 32;     // iterations in one turn
 
 /// sums [pixels], empty at first.
 void add_squared_error(std::vector<double>& sums, const Image& image, const Image& reference) {
@@ -66,7 +64,7 @@ public:
     bool began() const { return integrator_->completed() > 0; }
 
     void take_turn(const Image& reference) {
-        integrator_->run(batch());
+        integrator_->run(submission_size(integrator_->completed(), integrator_->seconds(), settings_, is_snapshot));
         if (is_snapshot(integrator_->completed()) || finished()) take_snapshot(reference);
     }
 
@@ -84,20 +82,6 @@ public:
     std::uint64_t invalid() const { return integrator_->invalid(); }
 
 private:
-    /// Iterations of the next turn: up to a snapshot, a bound or about submission_seconds, whichever comes first.
-    std::uint32_t batch() const {
-        const std::uint32_t completed = integrator_->completed();
-        if (completed == 0) return 1;
-        const double each = std::max(integrator_->seconds() / completed, 1e-6);
-        double wanted = std::min<double>(max_batch, submission_seconds / each);
-        if (settings_.seconds) wanted = std::min(wanted, (*settings_.seconds - integrator_->seconds()) / each);
-        std::uint32_t count = std::min(std::max(1u, std::uint32_t(wanted)), settings_.iterations - completed);
-        for (std::uint32_t i = 1; i < count; ++i) {
-            if (is_snapshot(completed + i)) count = i;
-        }
-        return count;
-    }
-
     void take_snapshot(const Image& reference) {
         Curve& curve = run_.curves.back();
         if (!curve.empty() && curve.back().iterations == integrator_->completed()) return;

@@ -7,13 +7,11 @@
 #include "core/process.h"
 #include "render/flatten.h"
 #include "render/integrator.h"
+#include "render/submission.h"
 #include "vk/device.h"
 
 namespace vkcppm {
 namespace {
-
-constexpr double submission_seconds = 0.1;  // a submission aims at this: progress stays lively, a watchdog quiet
-constexpr std::uint32_t max_batch = 32;     // iterations in one submission
 
 /// Wall and CPU seconds since it was made, without those that were spent in off_the_clock().
 class Stopwatch {
@@ -36,18 +34,6 @@ private:
 /// True where the error after `done` iterations is wanted.
 bool is_measured(const Measuring* measuring, std::uint32_t done) {
     return measuring && (measuring->stop_at || is_snapshot(done));
-}
-
-/// Iterations of the next submission: never beyond the bounds or the next measurement, about submission_seconds long.
-std::uint32_t batch_size(std::uint32_t done, const Settings& settings, double wall, const Measuring* measuring) {
-    if (done == 0) return 1;
-    const double each = std::max(wall / done, 1e-6);
-    double batch = std::min<double>(max_batch, submission_seconds / each);
-    if (settings.seconds) batch = std::min(batch, (*settings.seconds - wall) / each);
-    const std::uint32_t most = std::min<std::uint32_t>(settings.iterations - done, std::max(1u, std::uint32_t(batch)));
-    std::uint32_t size = 1;
-    while (size < most && !is_measured(measuring, done + size)) ++size;
-    return size;
 }
 
 CurvePoint measure(Integrator& integrator, const Image& reference) {
@@ -75,7 +61,8 @@ Rendering render(const Scene& scene, const Settings& wanted, Device& device, con
     };
     bool going = true;
     while (going && integrator.completed() < settings.iterations) {
-        integrator.run(batch_size(integrator.completed(), settings, watch.wall(), measuring));
+        integrator.run(submission_size(integrator.completed(), watch.wall(), settings,
+                                       [&](std::uint32_t done) { return is_measured(measuring, done); }));
         const std::uint32_t done = integrator.completed();
         if (is_measured(measuring, done)) {
             watch.off_the_clock(take_measure);

@@ -69,6 +69,8 @@ void main() {
     int steps = int(params.step_budget);
     CellBox box;
     Walk walk;
+    // Out of steps at its head as well as by the break: of a loop with one exit, a break that lanes take on different
+    // trips, Mesa 22.3.6 leaves every lane with the values of the last trip, its own or not.
     while (steps > 0) {
         box = cell_box(position, kept.flux.z);
         float reach2 = kept.flux.z * kept.flux.z;

@@ -1,9 +1,9 @@
 #version 460
-// The path tracer: one invocation a pixel, launch.count paths of it one after the other, so that a SIMD group stays full.
-// Unbiased: every vertex with a lobe of width above 0 asks for one point of the lights, and what the next ray meets counts
-// too; both are weighed by the power heuristic (Veach 1997, section 9.2.4), punctual lights are asked for alone. A ray to a
-// light is stopped by glass. Where light is split (FEATURE_SPLIT) what photons bring is left out; else light of punctual lights
-// by way of delta lobes is missing, which no path finds.
+// The path tracer: one invocation a pixel, launch.count paths of it one after the other, so that a SIMD group stays
+// full. Unbiased: every vertex with a lobe of width above 0 asks for one point of the lights, and what the next ray
+// meets counts too; both are weighed by the power heuristic (Veach 1997, section 9.2.4), punctual lights are asked for
+// alone. A ray to a light is stopped by glass. Where light is split (FEATURE_SPLIT) what photons bring is left out; else
+// light of punctual lights by way of delta lobes is missing, which no path finds.
 // Reads the scene and the lights; writes image [P], the mean of the launch's paths, and traces. O(paths x bounces x log
 // triangles). Fails by running out of steps: goes on next round.
 #include "include/kernel.glsl"

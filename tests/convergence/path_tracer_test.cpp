@@ -46,13 +46,7 @@ reference::PathTracing trace_on_device(const Scene& scene, const Settings& wante
 }
 
 reference::PathTracing trace_in_double(const Scene& scene, const Settings& settings, std::uint32_t samples) {
-    reference::PathTracerSettings reference;
-    reference.size = *settings.size;
-    reference.samples = samples;
-    reference.max_depth = settings.max_depth;
-    reference.aperture = settings.aperture;
-    reference.focus_distance = settings.focus_distance.value_or(1.0);
-    return reference::path_trace(scene, reference);
+    return reference::path_trace(scene, reference_settings(settings, samples));
 }
 
 Reference refer(const Scene& scene, const Settings& settings, std::uint32_t iterations, std::uint32_t photons) {

@@ -218,7 +218,7 @@ TEST_F(Gather, SumsCountsAndTalliesAreThoseOfAllPhotons) {
     };
     for (const Case& c : {Case{0, 2, 6}, Case{512, 2, 6}, Case{64, 4, 12}, Case{0, 1, 4}}) {
         SCOPED_TRACE(fmt::format("table of {} entries, {} rings, {} sectors", c.cells, c.rings, c.sectors));
-        Settings settings = settings_of("cppm", 1500);
+        Settings settings = settings_of("cppm", 2400);
         settings.rings = c.rings;
         settings.sectors = c.sectors;
         Rig rig(room(), settings);
@@ -282,7 +282,7 @@ TEST_F(Gather, SumsCountsAndTalliesAreThoseOfAllPhotons) {
             ASSERT_LE(differences, 2 * doubt.cells) << where(i, *point, radius2);
             doubtful_cells += doubt.cells > 0 ? 1 : 0;
         }
-        EXPECT_GT(photons, 10u * rig.pixels()) << "too few photons to mean anything";
+        EXPECT_GT(photons, 20u * rig.pixels()) << "too few photons to mean anything";
         EXPECT_GT(smooth, 50u) << "pixels on shaded normals";
         EXPECT_LT(doubtful_pixels, rig.pixels() / 50);
         EXPECT_LT(doubtful_cells, rig.pixels() / 20);
@@ -303,7 +303,7 @@ TEST_F(Gather, SumsCountsAndTalliesAreThoseOfAllPhotons) {
 }
 
 TEST_F(Gather, AFoldedTallyAddsOppositeSectors) {
-    Rig plain(room(), settings_of("cppm", 1500)), folded(room(), settings_of("cppm-fold", 1500));
+    Rig plain(room(), settings_of("cppm", 2400)), folded(room(), settings_of("cppm-fold", 2400));
     for (Rig* rig : {&plain, &folded}) {
         rig->integrator.run(1);
         rig->integrator.buffer(BIND_PIXELS).upload(random_radii(*rig, 16));
@@ -326,7 +326,7 @@ TEST_F(Gather, AFoldedTallyAddsOppositeSectors) {
             }
         }
     }
-    EXPECT_GT(sum, 10 * p) << "too few photons to mean anything";
+    EXPECT_GT(sum, 20 * p) << "too few photons to mean anything";
 }
 
 }  // namespace

@@ -48,13 +48,18 @@ Image render_photons(const Scene& scene, const Settings& settings) {
 
 }  // namespace
 
-TwoWays render_two_ways(const Scene& scene, Settings settings, std::uint32_t samples, std::uint32_t seeds) {
+reference::PathTracerSettings reference_settings(const Settings& settings, std::uint32_t samples) {
     reference::PathTracerSettings reference;
     reference.size = *settings.size;
     reference.samples = samples;
     reference.max_depth = settings.max_depth;
     reference.aperture = settings.aperture;
     reference.focus_distance = settings.focus_distance.value_or(1.0);
+    return reference;
+}
+
+TwoWays render_two_ways(const Scene& scene, Settings settings, std::uint32_t samples, std::uint32_t seeds) {
+    reference::PathTracerSettings reference = reference_settings(settings, samples);
     TwoWays pictures;
     for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
         settings.seed = reference.seed = seed;

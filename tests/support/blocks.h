@@ -16,6 +16,9 @@ namespace vkcppm::test {
 /// Several pictures of one kind, of seeds 1, 2...: their spread is the error of their mean.
 using Pictures = std::vector<Image>;
 
+/// What the reference path tracer is asked for: size, depth and lens of the settings.
+reference::PathTracerSettings reference_settings(const Settings& settings, std::uint32_t samples);
+
 /// The scene by the renderer and by the reference path tracer, each with seeds 1 to `seeds`, of the size, the depth and
 /// the lens of the settings. The device is the one without the validation layer.
 struct TwoWays {
