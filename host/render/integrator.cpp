@@ -58,7 +58,8 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     params_.inverse_paths = params_.photons > 0 ? 1.0f / float(params_.photons) : 0.0f;
     const std::uint32_t per_lane = std::clamp(params_.photons / device.busy_lanes(), 1u, most_photons_per_lane);
     params_.photons_per_lane = per_lane;
-    params_.photon_lanes = std::max(1u, (params_.photons + per_lane - 1) / per_lane);
+    // Whole work groups: a SIMD group takes the share of all its lanes.
+    params_.photon_lanes = (params_.photons / per_lane / workgroup + 1) * workgroup;
     params_.photon_capacity = per_lane * first_photon_capacity;
     params_.knn = settings.knn;
     params_.radius_cap = float(radius_cap * std::max(scene.radius, 1e-3));
@@ -100,7 +101,7 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     buffers_.allocate(BIND_NEAREST, "nearest", settings.knn * pixels_ * sizeof(float), Kind::storage);
     buffers_.allocate(BIND_IMAGE, "image", pixels_ * sizeof(gpu::vec3), Kind::storage);
     buffers_.allocate(BIND_PATHS, "paths", params_.photon_lanes * sizeof(gpu::PathState), Kind::storage);
-    const std::uint64_t counters = std::uint64_t(params_.cells) + 1 + params_.photon_lanes + 1 +
+    const std::uint64_t counters = std::uint64_t(params_.cells) + 1 + 2 * std::uint64_t(params_.photons) + 1 +
                                    (std::uint64_t(params_.sort_lanes) << digit_bits_) + params_.scan_blocks;
     buffers_.allocate(BIND_COUNTERS, "counters", counters * sizeof(std::uint32_t), Kind::word_texels);
     bindings_.bind(BIND_COUNTER_TEXELS, buffer(BIND_COUNTERS));
@@ -117,12 +118,13 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
 void Integrator::allocate_photons() {
     using Kind = Buffer::Kind;
     const std::uint64_t slots = std::uint64_t(params_.photon_lanes) * params_.photon_capacity;
-    buffers_.allocate(BIND_PHOTONS, "photons", slots * sizeof(gpu::Photon), Kind::storage);
+    buffers_.allocate(BIND_PHOTONS, "photons", slots * sizeof(gpu::Photon), Kind::uint_texels);
     buffers_.allocate(BIND_PHOTON_FLUX, "photon flux", slots * sizeof(gpu::PhotonFlux), Kind::storage);
     buffers_.allocate(BIND_SORTED, "sorted photons", slots * sizeof(gpu::Photon), Kind::uint_texels);
     buffers_.allocate(BIND_SORTED_FLUX, "sorted photon flux", slots * sizeof(gpu::PhotonFlux), Kind::uint_texels);
     buffers_.allocate(BIND_PAIRS_A, "pairs a", slots * sizeof(gpu::uvec2), Kind::storage);
     buffers_.allocate(BIND_PAIRS_B, "pairs b", slots * sizeof(gpu::uvec2), Kind::storage);
+    bindings_.bind(BIND_PHOTON_TEXELS, buffer(BIND_PHOTONS));
     bindings_.bind(BIND_SORTED_TEXELS, buffer(BIND_SORTED));
     bindings_.bind(BIND_FLUX_TEXELS, buffer(BIND_SORTED_FLUX));
     buffer(BIND_PARAMS).upload_value(params_);
@@ -166,12 +168,12 @@ void Integrator::iterate(std::uint32_t i, Pass from, std::uint32_t first_round) 
 
 void Integrator::build_grid(std::uint32_t i) {
     const gpu::Launch plain{.iteration = i, .round = 0, .last_round = 1, .offset = 0, .count = 0};
-    const std::uint32_t lanes_at = params_.cells + 1;
-    scan(i, lanes_at, params_.photon_lanes + 1);  // photons before each lane, and in all
+    const std::uint32_t paths_at = params_.cells + 1;
+    scan(i, paths_at, params_.photons + 1);  // photons before each path, and in all
     if (plans_grid(i)) launch("grid_plan", 1, plain);
     launch("grid_clear", stride_invocations, plain);
     launch("grid_key", params_.photon_lanes, plain);
-    const std::uint32_t radix_at = lanes_at + params_.photon_lanes + 1;
+    const std::uint32_t radix_at = paths_at + 2 * params_.photons + 1;
     for (std::uint32_t digit = 0; digit < digits_; ++digit) {
         gpu::Launch push = plain;
         push.offset = digit * digit_bits_;

@@ -64,10 +64,10 @@ std::string missing(const vk::raii::PhysicalDevice& physical) {
     if (!chain.get<vk::PhysicalDeviceVulkan12Features>().scalarBlockLayout) return "scalarBlockLayout is needed";
     const auto subgroup = physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupProperties>()
                               .get<vk::PhysicalDeviceSubgroupProperties>();
-    const auto needed = vk::SubgroupFeatureFlagBits::eVote | vk::SubgroupFeatureFlagBits::eArithmetic;
+    const auto needed = vk::SubgroupFeatureFlagBits::eBallot;
     if (!(subgroup.supportedStages & vk::ShaderStageFlagBits::eCompute) ||
         (subgroup.supportedOperations & needed) != needed) {
-        return "subgroup votes and arithmetic in compute shaders are needed";
+        return "subgroup ballots in compute shaders are needed";
     }
     if (!compute_family(physical)) return "no compute queue with timestamps";
     const std::uint32_t storage = BIND_COUNT - BIND_FIRST_STORAGE;

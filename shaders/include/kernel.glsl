@@ -1,7 +1,7 @@
 // What every kernel starts with: shared types, specialization constants, the launch block, buffers.
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_vote : require
-#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
 #include "shared/types.h"
 #include "shared/estimators.h"
 #include "shared/bindings.h"

@@ -1,22 +1,39 @@
 #version 460
-// One invocation a photon lane: makes its photons compact in the order of paths and bounces, and counts them by cell.
-// Reads photons and the scanned lane counts; writes pairs_a (cell, slot) and counters[cell]. O(photons of the lane).
+// One invocation a lane of `photons_per_lane` paths: makes their photons compact in the order of paths and bounces, and
+// counts them by cell. Reads photons, the slots of the paths and the scanned counts; writes pairs_a (cell, slot) and
+// counters[cell]. O(photons of the lane).
 #include "include/kernel.glsl"
 #include "include/grid.glsl"
 #include "include/counters.glsl"
 
-layout(binding = BIND_PHOTONS, scalar) readonly buffer PhotonBlock { Photon photons[]; };
+layout(binding = BIND_PHOTON_TEXELS) uniform usamplerBuffer photons;
+layout(binding = BIND_COUNTER_TEXELS) uniform usamplerBuffer counts;
 layout(binding = BIND_PAIRS_A, scalar) writeonly buffer PairBlock { uvec2 pairs[]; };
 layout(binding = BIND_COUNTERS, scalar) buffer CounterBlock { uint counters[]; };
 
+uint count_at(uint word) { return texelFetch(counts, int(word)).x; }
+
 void main() {
-    uint lane = invocation();
-    if (lane >= params.photon_lanes || blocked(0u)) return;
-    uint slot = lane * params.photon_capacity;
-    uint end = counters[LANE_COUNTS + lane + 1u];
-    for (uint i = counters[LANE_COUNTS + lane]; i < end; ++i, ++slot) {
-        uint cell = cell_index(clamp_cell(cell_of(photons[slot].position)));
-        pairs[i] = uvec2(cell, slot);
-        atomicAdd(counters[cell], 1u);
+    uint path = invocation() * params.photons_per_lane;
+    if (path >= params.photons || blocked(0u)) return;
+    uint end = count_at(PATH_COUNTS + min(path + params.photons_per_lane, params.photons));
+    uint i = count_at(PATH_COUNTS + path);
+    uint path_end = i;  // of the path before
+    uint slot = 0u;
+    while (i < end) {
+        // Loads of texels are made by all lanes alike.
+        uint next_slot = count_at(PATH_SLOTS + path);
+        uint next_end = count_at(PATH_COUNTS + path + 1u);
+        bool ended = i == path_end;
+        slot = ended ? next_slot : slot;
+        path_end = ended ? next_end : path_end;
+        path += uint(ended);
+        if (i < path_end) {
+            uint cell = cell_index(clamp_cell(cell_of(uintBitsToFloat(texelFetch(photons, int(slot)).xyz))));
+            pairs[i] = uvec2(cell, slot);
+            atomicAdd(counters[cell], 1u);
+            ++i;
+            ++slot;
+        }
     }
 }

@@ -7,9 +7,9 @@
 
 layout(binding = BIND_PAIRS_A, scalar) buffer PairBlockA { uvec2 pairs_a[]; };
 layout(binding = BIND_PAIRS_B, scalar) buffer PairBlockB { uvec2 pairs_b[]; };
-layout(binding = BIND_PHOTONS, scalar) readonly buffer PhotonBlock { Photon photons[]; };
+layout(binding = BIND_PHOTON_TEXELS) uniform usamplerBuffer photons;
 layout(binding = BIND_PHOTON_FLUX, scalar) readonly buffer FluxBlock { PhotonFlux photon_flux[]; };
-layout(binding = BIND_SORTED, scalar) writeonly buffer SortedBlock { Photon sorted[]; };
+layout(binding = BIND_SORTED, scalar) writeonly buffer SortedBlock { uvec4 sorted[]; };  // Photon
 layout(binding = BIND_SORTED_FLUX, scalar) writeonly buffer SortedFluxBlock { PhotonFlux sorted_flux[]; };
 layout(binding = BIND_COUNTERS, scalar) readonly buffer CounterBlock { uint counters[]; };
 
@@ -20,7 +20,7 @@ void main() {
     uint stride = gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_WorkGroupSize.x;
     for (uint i = invocation(); i < total; i += stride) {
         uint slot = in_a ? pairs_a[i].y : pairs_b[i].y;
-        sorted[i] = photons[slot];
+        sorted[i] = texelFetch(photons, int(slot));
         sorted_flux[i] = photon_flux[slot];
     }
 }

@@ -1,8 +1,9 @@
 #version 460
-// One invocation a lane of `photons_per_lane` light paths; the next path starts when the lane's path ends, so that a
-// SIMD group stays full. Reads the scene and the lights; writes photons [lanes x capacity], photon_flux, the
-// photons stored a lane (counters), paths. O(paths x bounces x log triangles). Fails by running out of steps (goes on
-// next round) or of slots (counts on without storing, reports the number needed).
+// The lanes of a SIMD group share light paths, `photons_per_lane` for each of them: a lane takes the next one when its own
+// ends, so that none is idle before all are taken. Which lane traces a path changes nothing: its photons are found by
+// the path. Reads the scene and the lights; writes photons [lanes x capacity], photon_flux, how many photons a path has
+// stored and where (counters), paths. O(paths x bounces x log triangles). Fails by running out of steps (goes on next
+// round) or of slots (counts on without storing, reports the number needed).
 #include "include/kernel.glsl"
 #include "include/rng.glsl"
 #include "include/frame.glsl"
@@ -35,26 +36,36 @@ float shading_correction(Surface surface, vec3 before, vec3 after) {
 void main() {
     uint lane = invocation();
     if (lane >= params.photon_lanes || blocked(PASS_PHOTON | PASS_CAPACITY)) return;
-    uint first = lane * params.photons_per_lane;
-    uint count = min(params.photons_per_lane, params.photons - first);
+    uint share = gl_SubgroupSize * params.photons_per_lane;
+    uint first = min(((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_NumSubgroups + gl_SubgroupID) * share,
+                     params.photons);
+    uint end = min(first + share, params.photons);
 
     PathState state;
     if (launch.round == 0u) {
-        state = PathState(vec3(0.0), 0u, vec3(0.0), PATH_OUTSIDE, vec3(0.0), 0u, 0.0);
+        state = PathState(vec3(0.0), NO_PATH, vec3(0.0), PATH_OUTSIDE, vec3(0.0), 0u, 0.0, 0u, first);
     } else {
         state = paths[lane];
-        if (state.path >= count) return;
     }
     uint slot = lane * params.photon_capacity;
     uint rays = 0u;
     int steps = int(params.step_budget);
     // Lanes whose ray is done do not wait for the longest of the SIMD group: see traverse().
     Traversal traversal = no_traversal();
-    bool running = state.path < count;
+    bool running = true;
     bool fresh = true;     // the lane's ray has not begun
     bool first_ray = true; // it began with the whole budget
-    while (subgroupAny(running)) {
-        uint path = first + state.path;
+    while (lanes(running) > 0u) {
+        bool wants = running && state.path == NO_PATH;
+        uvec4 wanting = subgroupBallot(wants);
+        uint taken = state.next + subgroupBallotExclusiveBitCount(wanting);
+        state.next += subgroupBallotBitCount(wanting);
+        if (wants) {
+            running = taken < end;
+            state.path = running ? taken : NO_PATH;
+            state.begin = state.stored;
+        }
+        uint path = state.path;
         if (running && fresh) {
             if ((state.memory & PATH_BOUNCES) == 0u) {
                 uint kind = emit(random_words(params.seed, launch.iteration, STREAM_PHOTON, path, 0u),
@@ -162,13 +173,13 @@ void main() {
             state.origin = leave(surface, state.direction);
         }
         if (!alive) {
-            ++state.path;
+            counters[PATH_COUNTS + path] = state.stored - state.begin;
+            counters[PATH_SLOTS + path] = slot + state.begin;
+            state.path = NO_PATH;
             state.memory = PATH_OUTSIDE;
-            running = state.path < count;
         }
     }
     paths[lane] = state;
-    counters[LANE_COUNTS + lane] = min(state.stored, params.photon_capacity);
     if (lane == 0u) counters[PHOTON_TOTAL] = 0u;  // the scan of the counts leaves the total here
     if (state.stored > params.photon_capacity) {
         atomicMax(status.capacity, state.stored);

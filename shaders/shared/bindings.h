@@ -21,31 +21,32 @@
 #define BIND_TEXELS 13             // usamplerBuffer, 1 word a texel of an image: 8 bits a channel
 #define BIND_ENVIRONMENT 14        // samplerBuffer, 1 texel a pixel: radiance, keep of its alias table
 #define BIND_ENVIRONMENT_ALIAS 15  // usamplerBuffer, 1 word a pixel
+#define BIND_PHOTON_TEXELS 16      // usamplerBuffer over BIND_PHOTONS
 // Storage buffers.
-#define BIND_HIT_POSITION 16
-#define BIND_HIT_WEIGHT 17
-#define BIND_HIT_EMISSION 18
-#define BIND_GATHERED 19
-#define BIND_PIXELS 20
-#define BIND_TALLY 21          // [bins x P] counts
-#define BIND_FILM 22
-#define BIND_PHOTONS 23        // [lanes x capacity] Photon, as traced
-#define BIND_PHOTON_FLUX 24
-#define BIND_PATHS 25          // [lanes] PathState; of the path tracer: [P] TraceState
-#define BIND_SORTED 26         // [N] Photon in cell order
-#define BIND_SORTED_FLUX 27
-#define BIND_PAIRS_A 28        // [N] (cell, slot)
-#define BIND_PAIRS_B 29
-#define BIND_COUNTERS 30       // lane counts, cell starts, radix histogram, scan blocks
-#define BIND_GRID 31
-#define BIND_STATUS 32
-#define BIND_CURSOR 33
-#define BIND_NEAREST 34        // [knn x P] squared distances, while pixels are seeded
-#define BIND_IMAGE 35
-#define BIND_MOMENTS 36        // [moments x P] float sums of estimators that weigh photons
-#define BIND_QUANTILES 37      // [rings x F_QUANTILES] thresholds of the F-tests
-#define BIND_AOVS 38           // [P] Aovs, where they are asked for
-#define BIND_HIT_SURFACE 39    // [P] HitSurface, in glossy scenes
-#define BIND_COUNT 40
+#define BIND_HIT_POSITION 17
+#define BIND_HIT_WEIGHT 18
+#define BIND_HIT_EMISSION 19
+#define BIND_GATHERED 20
+#define BIND_PIXELS 21
+#define BIND_TALLY 22          // [bins x P] counts
+#define BIND_FILM 23
+#define BIND_PHOTONS 24        // [lanes x capacity] Photon, as traced
+#define BIND_PHOTON_FLUX 25
+#define BIND_PATHS 26          // [lanes] PathState; of the path tracer: [P] TraceState
+#define BIND_SORTED 27         // [N] Photon in cell order
+#define BIND_SORTED_FLUX 28
+#define BIND_PAIRS_A 29        // [N] (cell, slot)
+#define BIND_PAIRS_B 30
+#define BIND_COUNTERS 31       // cell starts, photons of the paths, radix histogram, scan blocks
+#define BIND_GRID 32
+#define BIND_STATUS 33
+#define BIND_CURSOR 34
+#define BIND_NEAREST 35        // [knn x P] squared distances, while pixels are seeded
+#define BIND_IMAGE 36
+#define BIND_MOMENTS 37        // [moments x P] float sums of estimators that weigh photons
+#define BIND_QUANTILES 38      // [rings x F_QUANTILES] thresholds of the F-tests
+#define BIND_AOVS 39           // [P] Aovs, where they are asked for
+#define BIND_HIT_SURFACE 40    // [P] HitSurface, in glossy scenes
+#define BIND_COUNT 41
 #define BIND_FIRST_TEXEL 1
-#define BIND_FIRST_STORAGE 16
+#define BIND_FIRST_STORAGE 17

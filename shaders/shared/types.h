@@ -282,13 +282,16 @@ struct Film {
 // A light path in flight at the end of a round, one a lane.
 struct PathState {
     vec3 origin;
-    uint path;         // index within the lane's photons; >= the lane's number: done
+    uint path;         // NO_PATH: none in flight
     vec3 direction;
     uint memory;       // bounces | PATH_*
     vec3 power;
     uint stored;       // photons this lane has stored
     float power0;      // largest channel of the power at emission, for Russian roulette
+    uint begin;        // stored before this path
+    uint next;         // path that the SIMD group takes next
 };
+#define NO_PATH 0xffffffffu
 
 // A path of the path tracer in flight at the end of a round, one a pixel: the next ray of the path, and before it the
 // ray to a light, where one is asked for.
@@ -363,7 +366,7 @@ struct Params {
     vec3 bounds_low;       // of the triangles, padded
     uint photons;          // paths an iteration
     vec3 bounds_high;
-    uint photons_per_lane;
+    uint photons_per_lane; // paths
     uint photon_lanes;
     uint photon_capacity;  // slots a lane
     uint max_depth;

@@ -68,7 +68,7 @@ def race(options, scene, **changes):
     scene_file, reference = ROOT / "scenes" / f"{scene}.gltf", reference_of(chosen, scene)
     arguments = flags(estimators=chosen.estimators, iterations=chosen.iterations, photons=chosen.photons,
                       size=chosen.size, seeds=chosen.seeds, knn=chosen.knn, device=chosen.device,
-                      exposure=getattr(chosen, "exposure", None))
+                      exposure=getattr(chosen, "exposure", None), seed=getattr(chosen, "seed", None))
     key = hashlib.sha256("\n".join(arguments).encode())
     for file in (chosen.program, scene_file, reference):
         key.update(hashlib.sha256(file.read_bytes()).digest())
@@ -183,7 +183,8 @@ def conditions(options, some_race):
     return paragraph(f"""Commit: {commit}. Device: {data['driver']}. {data['width']}x{data['height']} pixels,
         {settings['photons']:,} paths an iteration, {data['iterations']:,} iterations, k_NN = {settings['knn']},
         {options.seeds} {'seed' if options.seeds == 1 else 'seeds'}. Error: {some_race.title}, against the scenes'
-        references, whose own noise is taken off{noise}. Seconds are those of the passes, by the device's timestamps; estimators take turns.""")
+        references, whose own noise is taken off{noise}. Seconds are those of the passes, by the device's timestamps;
+        estimators take turns.""")
 
 
 def write_figure(options, name, text):

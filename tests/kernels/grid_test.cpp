@@ -65,8 +65,7 @@ protected:
                 << "axis " << axis;
         }
 
-        // As stored: lane by lane, which is path by path and bounce by bounce.
-        const auto paths = rig.all<gpu::PathState>(BIND_PATHS);
+        // Path by path and bounce by bounce.
         const auto photons = rig.all<gpu::Photon>(BIND_PHOTONS);
         const auto fluxes = rig.all<gpu::PhotonFlux>(BIND_PHOTON_FLUX);
         struct Entry {
@@ -74,9 +73,8 @@ protected:
             std::size_t slot;
         };
         std::vector<Entry> entries;
-        for (std::uint32_t lane = 0; lane < params.photon_lanes; ++lane) {
-            for (std::uint32_t i = 0; i < paths[lane].stored; ++i) {
-                const std::size_t slot = std::size_t(lane) * params.photon_capacity + i;
+        for (const StoredPath& path : rig.stored_paths()) {
+            for (std::size_t slot = path.slot; slot < path.slot + path.count; ++slot) {
                 entries.push_back({entry_of(grid, cell_of(grid, photons[slot].position)), slot});
             }
         }
@@ -144,7 +142,7 @@ TEST_F(GridOrder, ExclusiveScanOfAnyRange) {
     const std::size_t words = rig.integrator.buffer(BIND_COUNTERS).bytes() / 4;
     const gpu::Params& params = rig.integrator.params();
     std::mt19937 random(14);
-    const std::uint32_t limit = params.cells + 1 + params.photon_lanes + 1 + params.sort_lanes * 64;
+    const std::uint32_t limit = params.cells + 1 + 2 * params.photons + 1 + params.sort_lanes * 64;
     // What stands at 0 is the table of cells: of it only the entries in use are scanned, and the end of the last.
     struct Case {
         std::uint32_t offset, count, entries;

@@ -25,7 +25,7 @@
     X(photons) X(seen) X(statistic)
 #define MEMBERS_AOVS X(albedo) X(normal) X(depth) X(hits)
 #define MEMBERS_FILM X(sum) X(low)
-#define MEMBERS_PATH_STATE X(origin) X(path) X(direction) X(memory) X(power) X(stored) X(power0)
+#define MEMBERS_PATH_STATE X(origin) X(path) X(direction) X(memory) X(power) X(stored) X(power0) X(begin) X(next)
 #define MEMBERS_TRACE_STATE X(origin) X(memory) X(direction) X(density) X(throughput) X(distance) X(radiance) X(done) \
     X(sum) X(ended) X(light_origin) X(light_distance) X(light_direction) X(light_triangle) X(light)
 #define MEMBERS_CURSOR X(cell) X(photon)

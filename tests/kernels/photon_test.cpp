@@ -24,20 +24,18 @@ struct Stored {
     gpu::PhotonFlux flux;
 };
 
-/// Photons by lane, as traced.
+/// Photons by path.
 std::vector<std::vector<Stored>> stored_photons(Rig& rig) {
-    const gpu::Params& params = rig.integrator.params();
-    const auto paths = rig.all<gpu::PathState>(BIND_PATHS);
     const auto photons = rig.all<gpu::Photon>(BIND_PHOTONS);
     const auto fluxes = rig.all<gpu::PhotonFlux>(BIND_PHOTON_FLUX);
-    std::vector<std::vector<Stored>> lanes(params.photon_lanes);
-    for (std::uint32_t lane = 0; lane < params.photon_lanes; ++lane) {
-        for (std::uint32_t i = 0; i < paths[lane].stored; ++i) {
-            const std::size_t slot = std::size_t(lane) * params.photon_capacity + i;
-            lanes[lane].push_back({photons[slot], fluxes[slot]});
+    std::vector<std::vector<Stored>> paths;
+    for (const StoredPath& path : rig.stored_paths()) {
+        paths.emplace_back();
+        for (std::size_t slot = path.slot; slot < path.slot + path.count; ++slot) {
+            paths.back().push_back({photons[slot], fluxes[slot]});
         }
     }
-    return lanes;
+    return paths;
 }
 
 Settings with_photons(std::uint32_t photons, std::uint32_t max_depth, std::uint32_t seed = 1) {
@@ -49,10 +47,10 @@ Settings with_photons(std::uint32_t photons, std::uint32_t max_depth, std::uint3
     return settings;
 }
 
-/// Power in W that the photons of a lane carry, first channel.
-double lane_power(const Rig& rig, const std::vector<Stored>& lane) {
+/// Power in W that the photons of a path carry, first channel.
+double path_power(const Rig& rig, const std::vector<Stored>& path) {
     double sum = 0.0;
-    for (const Stored& stored : lane) sum += double(stored.flux.power.x);
+    for (const Stored& stored : path) sum += double(stored.flux.power.x);
     return sum / (rig.flat.frame.scale * rig.flat.frame.scale);
 }
 
@@ -62,8 +60,8 @@ TEST_F(Photons, LieOnDiffuseSurfacesOnTheSideTheyCameFrom) {
     Rig rig(room(), with_photons(2048, 64));
     rig.integrator.run(1);
     std::size_t count = 0;
-    for (const auto& lane : stored_photons(rig)) {
-        for (const Stored& stored : lane) {
+    for (const auto& path : stored_photons(rig)) {
+        for (const Stored& stored : path) {
             ++count;
             const glm::dvec3 p(stored.photon.position);
             const glm::dvec3 normal = reference::unpack_direction(stored.photon.normal);
@@ -94,10 +92,9 @@ TEST_F(Photons, LieOnDiffuseSurfacesOnTheSideTheyCameFrom) {
         }
     }
     EXPECT_GT(count, 2048u);
-    EXPECT_EQ(count,
-              rig.integrator.buffer(BIND_COUNTERS)
-                  .download<std::uint32_t>(rig.integrator.params().cells + 1 + rig.integrator.params().photon_lanes + 1)
-                  .back());
+    Report report;
+    rig.integrator.fill(report);
+    EXPECT_EQ(count, report.stored_photons);
 }
 
 TEST_F(Photons, AllCarryWhatTheirPathStartedWithInAGreyRoom) {
@@ -109,9 +106,9 @@ TEST_F(Photons, AllCarryWhatTheirPathStartedWithInAGreyRoom) {
         Rig rig(bare_room(float(albedo)), with_photons(4096, depth));
         rig.integrator.run(1);
         double count = 0.0;
-        for (const auto& lane : stored_photons(rig)) {
-            count += double(lane.size());
-            EXPECT_NEAR(lane_power(rig, lane), flux * double(lane.size()), 1e-5 * flux * double(lane.size()));
+        for (const auto& path : stored_photons(rig)) {
+            count += double(path.size());
+            EXPECT_NEAR(path_power(rig, path), flux * double(path.size()), 1e-5 * flux * double(path.size()));
         }
         double expected = 0.0, square = 0.0;  // of the photons of a path
         for (std::uint32_t b = 1; b <= depth; ++b) {
@@ -128,15 +125,14 @@ TEST_F(Photons, CarryTheSameFluxOnAverageUnderRoulette) {
         const std::uint32_t depth = 40;
         Rig rig(bare_room(albedo), with_photons(65536, depth));
         rig.integrator.run(1);
-        // Lanes are independent samples.
-        const auto lanes = stored_photons(rig);
+        const auto paths = stored_photons(rig);
         double sum = 0.0, squares = 0.0;
-        for (const auto& lane : lanes) {
-            const double power = lane_power(rig, lane) / rig.integrator.params().photons_per_lane;
+        for (const auto& path : paths) {
+            const double power = path_power(rig, path);
             sum += power;
             squares += power * power;
         }
-        const double n = double(lanes.size()), mean = sum / n;
+        const double n = double(paths.size()), mean = sum / n;
         const double error = std::sqrt((squares / n - mean * mean) / n);
         const double rho = albedo, expected = pi * 0.25 * 5.0 * (1.0 - std::pow(rho, depth)) / (1.0 - rho);
         EXPECT_NEAR(mean, expected, 4.0 * error) << "albedo " << albedo << ", standard error " << error << ", "
@@ -175,8 +171,8 @@ TEST_F(Photons, OfPunctualLightsCarryWhatMeetsASquare) {
     rig.integrator.run(1);
     const double scale2 = rig.flat.frame.scale * rig.flat.frame.scale;
     glm::dvec3 sum(0.0), squares(0.0);
-    for (const auto& lane : stored_photons(rig)) {
-        for (const Stored& stored : lane) {
+    for (const auto& path : stored_photons(rig)) {
+        for (const Stored& stored : path) {
             const glm::dvec3 power = glm::dvec3(stored.flux.power) / scale2;
             sum += power;
             squares += power * power;
@@ -190,19 +186,23 @@ TEST_F(Photons, OfPunctualLightsCarryWhatMeetsASquare) {
 }
 
 TEST_F(Photons, DoNotDependOnTheLaneThatTracesThem) {
-    // 256 paths by 16 lanes of 16, and by 256 lanes of one: the same photons in the same order, bit by bit.
-    Rig by_sixteen(room(), with_photons(256, 64)), one_by_one(room(), with_photons(4096, 64));
+    // 256 paths by lanes that have 16 each, and by lanes that have one: the same photons in the same order, bit by bit.
+    Rig by_sixteen(room(), with_photons(4096, 64)), one_by_one(room(), with_photons(4096, 64));
     gpu::Params params = one_by_one.integrator.params();
     params.photons = 256;
     params.inverse_paths = 1.0f / 256.0f;
     params.photons_per_lane = 1;
     params.photon_lanes = 256;
     one_by_one.integrator.set_params(params);
+    params.photons_per_lane = 16;
+    params.photon_lanes = 64;
+    params.photon_capacity *= 4;
+    by_sixteen.integrator.set_params(params);
     by_sixteen.integrator.run(1);
     one_by_one.integrator.run(1);
     std::vector<Stored> a, b;
-    for (const auto& lane : stored_photons(by_sixteen)) a.insert(a.end(), lane.begin(), lane.end());
-    for (const auto& lane : stored_photons(one_by_one)) b.insert(b.end(), lane.begin(), lane.end());
+    for (const auto& path : stored_photons(by_sixteen)) a.insert(a.end(), path.begin(), path.end());
+    for (const auto& path : stored_photons(one_by_one)) b.insert(b.end(), path.begin(), path.end());
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t i = 0; i < a.size(); ++i) {
         ASSERT_TRUE(a[i].photon.position == b[i].photon.position && a[i].photon.normal == b[i].photon.normal &&

@@ -97,7 +97,7 @@ SyntheticField::SyntheticField(Device& device, Settings settings, const Field& f
         }
     }
     const gpu::Params& params = integrator_.params();
-    counters_.assign(std::size_t(params.cells) + 1 + params.photon_lanes + 1, 0);
+    counters_.assign(std::size_t(params.cells) + 1 + 2 * std::size_t(params.photons) + 1, 0);
     upload_hits();
     reset(settings_.knn);
 }
@@ -193,17 +193,18 @@ void SyntheticField::run_exact(std::uint32_t count) {
     iterate();
 }
 
-/// Puts the photons into the slots of the lanes, full lanes first, and runs the kernels on them.
+/// Shares the photons out to the light paths and runs the kernels on them.
 void SyntheticField::iterate() {
     const gpu::Params& params = integrator_.params();
-    assert(photons_.size() <= std::size_t(params.photon_lanes) * params.photon_capacity);
-    std::size_t left = photons_.size();
-    for (std::uint32_t lane = 0; lane < params.photon_lanes; ++lane) {
-        const std::size_t here = std::min<std::size_t>(left, params.photon_capacity);
-        counters_[params.cells + 1 + lane] = std::uint32_t(here);
-        left -= here;
+    if (photons_.size() > std::size_t(params.photon_lanes) * params.photon_capacity) {
+        throw std::length_error("more photons than slots");
     }
-    if (left > 0) throw std::length_error("more photons than slots");
+    std::uint32_t* counts = counters_.data() + params.cells + 1;
+    std::uint32_t* slots = counts + params.photons + 1;
+    for (std::size_t p = 0; p < params.photons; ++p) {
+        slots[p] = std::uint32_t(photons_.size() * p / params.photons);
+        counts[p] = std::uint32_t(photons_.size() * (p + 1) / params.photons) - slots[p];
+    }
     integrator_.buffer(BIND_COUNTERS).upload(counters_);
     integrator_.buffer(BIND_PHOTONS).upload(photons_);
     integrator_.buffer(BIND_PHOTON_FLUX).upload(flux_);
