@@ -232,6 +232,16 @@ Options parse_render(const Words& words) {
         "Stop after the first iteration after which the error is at most this, such as relmse_trimmed=0.0035;\n"
         "one of " + metric_names())
         ->needs("--reference");
+    app.add_option("--checkpoint", options.checkpoint,
+                   "Keep the state of the render in this file, which is replaced whole, and once more at the end; what\n"
+                   "was there is lost")
+        ->type_name("FILE");
+    app.add_option("--resume", options.resume,
+                   "Go on from such a file, and keep the state there unless --checkpoint names another. Scene and settings\n"
+                   "must be the same, but --iterations and --time, which count from the first start, may be larger")
+        ->type_name("FILE");
+    add(app, "--checkpoint-every", "TIME", options.checkpoint_every, parse_seconds,
+        fmt::format("Rendering time between two states that are kept (default: {:g}s)", options.checkpoint_every));
     add_common(app, options.settings);
     add_parameters(app, options.settings);
     app.add_flag("--aovs", options.settings.aovs,
@@ -239,6 +249,9 @@ Options parse_render(const Words& words) {
                  "ppm.iterations, and Z, Albedo, N of the first surfaces");
     add_device(app, options.device);
     app.add_option("--stats", options.stats, "Times and counts of the render")->type_name("FILE.json");
+    app.add_flag("--hash", options.hash,
+                 "Print a hash of what each pass of each iteration wrote, and of the picture, to find where two renders\n"
+                 "part; slower");
     app.add_flag("--quiet", options.quiet, "No progress, only warnings and errors");
     app.add_flag("--verbose", options.verbose, "Times of the passes at the end");
 
@@ -246,6 +259,12 @@ Options parse_render(const Words& words) {
         return TextOptions{text};
     }
     options.output = output ? *output : std::filesystem::path(options.scene.file.stem().string() + ".exr");
+    if (!options.checkpoint) {
+        options.checkpoint = options.resume;
+    }
+    if (!options.checkpoint && app.count("--checkpoint-every") > 0) {
+        throw Error(ExitCode::usage, "--checkpoint-every needs --checkpoint or --resume");
+    }
     if (iterations) {
         options.settings.iterations = *iterations;
     } else if (options.settings.seconds) {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "app/checkpoint_file.h"
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/interrupt.h"
@@ -52,15 +53,67 @@ void print_stop(const StopAt& stop_at, const Rendering& rendering, bool quiet) {
     }
 }
 
+/// Where checkpoints go. A disk that is full for a while costs no more than the checkpoints of that while: a failure is
+/// told, and the render goes on.
+class Keeper {
+public:
+    Keeper(const fs::path& file, Identity identity) : file_(file), identity_(std::move(identity)) {}
+
+    void keep(const Checkpoint& checkpoint) {
+        failure_.reset();
+        try {
+            write_checkpoint(file_, identity_, checkpoint);
+        } catch (const Error& error) {
+            failure_ = error;
+            print_message(fmt::format("warning: no checkpoint after {} iterations: {}", checkpoint.report.iterations, error.what()));
+        }
+    }
+
+    /// Throws where the last checkpoint could not be written.
+    void require_kept() const {
+        if (failure_) {
+            throw *failure_;
+        }
+    }
+
+private:
+    fs::path file_;
+    Identity identity_;
+    std::optional<Error> failure_;
+};
+
+/// Says what of the checkpoint will not be as the command line has it.
+void print_start(const Checkpoint& from, const RenderOptions& options, const Settings& settings, const Device& device) {
+    const Report& then = from.report;
+    const DeviceInfo& now = device.info();
+    if (!options.quiet) {
+        print_message(fmt::format("goes on after {} iterations and {:.1f} s of {}", then.iterations, then.wall_seconds,
+                                  options.resume->string()));
+    }
+    if (then.device != now.name || then.driver != now.driver) {
+        print_message(fmt::format("warning: {} was written on {}, {}; here is {}, {}: the picture may have other bits than "
+                                  "without the change", options.resume->string(), then.device, then.driver, now.name,
+                                  now.driver));
+    }
+    if (then.iterations > settings.iterations) {
+        print_message(fmt::format("warning: {} has {} iterations, more than --iterations {}: the picture has them all",
+                                  options.resume->string(), then.iterations, settings.iterations));
+    }
+}
+
+void print_hash(std::uint32_t iteration, std::string_view pass, std::uint64_t hash) {
+    print_result(fmt::format("{} {} {:016x}\n", iteration, pass, hash));
+}
+
 Rendering render_with_progress(const Scene& scene, const RenderOptions& options, const Measuring* measuring,
-                               Device& device) {
+                               const Checkpointing& checkpointing, Device& device) {
     ProgressLine line(stderr, ::isatty(STDERR_FILENO) == 1, options.settings.seconds);
     const Rendering rendering = render(scene, options.settings, device, [&](const Progress& progress) {
         if (!options.quiet) {
             line.update(progress);
         }
         return !interrupted();
-    }, measuring);
+    }, measuring, checkpointing, options.hash ? print_hash : OnPassHash());
     if (!options.quiet) {
         const Report& report = rendering.report;
         Progress progress{report.iterations, rendering.settings.iterations, report.wall_seconds};
@@ -109,23 +162,54 @@ void print_table(const Report& report) {
 
 void execute(const RenderOptions& options) {
     catch_interrupts();
-    check_outputs({options.scene.file, options.scene.environment, options.reference},
-                  {{"-o", options.output}, {"--png", options.png}, {"--stats", options.stats}});
+    const bool keeps_elsewhere =
+        options.resume && fs::weakly_canonical(*options.resume) != fs::weakly_canonical(*options.checkpoint);
+    check_outputs({options.scene.file, options.scene.environment, options.reference,
+                   keeps_elsewhere ? options.resume : std::nullopt},
+                  {{"-o", options.output},
+                   {"--png", options.png},
+                   {"--stats", options.stats},
+                   {"--checkpoint", options.checkpoint}});
     const Scene scene = load_scene(options.scene);
     print_warnings(scene.warnings);
     // Bad values and references are told before the device is asked for.
     const Settings settings = resolve_settings(options.settings, scene);
     const std::optional<Measuring> measuring = read_measuring(options, *settings.size);
+    const Image* reference = measuring ? &measuring->reference : nullptr;
+    const Identity identity = identity_of(options.scene, scene, settings, reference);
+    const std::optional<Checkpoint> from =
+        options.resume ? std::optional(read_checkpoint(*options.resume, identity, settings.size->pixels())) : std::nullopt;
     Device device(options.device);
     require_validation(options.device, device);
-    const Rendering rendering = render_with_progress(scene, options, measuring ? &*measuring : nullptr, device);
+    Checkpointing checkpointing;
+    std::optional<Keeper> keeper;
+    if (from) {
+        print_start(*from, options, settings, device);
+        checkpointing.from = &*from;
+    }
+    if (options.checkpoint) {
+        keeper.emplace(*options.checkpoint, identity);
+        checkpointing.every = options.checkpoint_every;
+        checkpointing.keep = [&](const Checkpoint& checkpoint) { keeper->keep(checkpoint); };
+    }
+    const Rendering rendering =
+        render_with_progress(scene, options, measuring ? &*measuring : nullptr, checkpointing, device);
     print_warnings(rendering.warnings);
+    if (options.hash) {
+        print_result(fmt::format("picture {:016x}\n", hash_of(rendering.image)));
+    }
     if (options.stop_at) {
         print_stop(*options.stop_at, rendering, options.quiet);
     }
     write_outputs(options, scene, rendering);
     if (options.verbose) {
         print_table(rendering.report);
+    }
+    if (keeper) {
+        keeper->require_kept();
+        if (!options.quiet) {
+            print_message("wrote " + options.checkpoint->string());
+        }
     }
     check_validation(device);
 }

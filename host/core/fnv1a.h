@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 namespace vkcppm {
 
@@ -14,6 +15,13 @@ inline std::uint64_t fnv1a(std::span<const std::uint8_t> bytes, std::uint64_t ha
         hash = (hash ^ byte) * 0x100000001b3u;
     }
     return hash;
+}
+
+/// Of the bytes of values that have no padding.
+template <typename T>
+std::uint64_t fnv1a_of(std::span<const T> values, std::uint64_t hash = fnv1a_start) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    return fnv1a({reinterpret_cast<const std::uint8_t*>(values.data()), values.size_bytes()}, hash);
 }
 
 }  // namespace vkcppm

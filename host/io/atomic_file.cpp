@@ -76,6 +76,10 @@ public:
     }
 
     void commit() {
+        // Without it a loss of power may leave the new name to a file without its bytes.
+        if (::fsync(descriptor_) != 0) {
+            fail_with_errno(file_);
+        }
         if (::close(std::exchange(descriptor_, -1)) != 0 || std::rename(part_.c_str(), target_.c_str()) != 0) {
             fail_with_errno(file_);
         }

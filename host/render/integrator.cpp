@@ -44,8 +44,10 @@ void set_test(gpu::Params& params, const EstimatorRow& estimator, const Settings
 
 }  // namespace
 
-Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings)
-    : device_(device), bindings_(device), commands_(device, bindings_, timed_launches), buffers_(device, bindings_, scene) {
+Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings,
+                       std::uint32_t group)
+    : device_(device), bindings_(device), commands_(device, bindings_, timed_launches), buffers_(device, bindings_, scene),
+      group_(group) {
     const EstimatorRow& estimator = find_estimator(settings.estimator);
     const std::uint32_t features = bits_of(scene.features) | bits_of(features_of(settings));
     scale_ = scene.frame.scale;
@@ -72,7 +74,7 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     params_.beta = float(settings.beta);
     params_.cells = std::bit_ceil(std::clamp(16 * settings.photons, 1u << 12, 1u << 20));
     params_.sort_lanes = std::bit_ceil(std::clamp(settings.photons / 128, 64u, 4096u));
-    params_.scan_blocks = std::clamp(params_.cells / 256, workgroup, 4096u);
+    params_.scan_blocks = std::clamp(params_.cells / 256, group_, 4096u);
     const auto key_bits = std::uint32_t(std::countr_zero(params_.cells));
     digits_ = (key_bits + 7) / 8;
     digit_bits_ = (key_bits + digits_ - 1) / digits_;
@@ -132,6 +134,7 @@ void Integrator::allocate_photons() {
 
 void Integrator::compile(const Settings& settings, const Bvh& bvh, std::uint32_t features) {
     Specialization specialization = scene_specialization(bvh, features);
+    specialization[SPEC_WORKGROUP] = group_;
     specialization.merge(Specialization{{SPEC_ESTIMATOR, find_estimator(settings.estimator).id},
                                         {SPEC_RINGS, settings.rings},
                                         {SPEC_SECTORS, settings.sectors},
@@ -154,14 +157,15 @@ void Integrator::warm_up() {
 }
 
 // The algorithm box: every line is one pass over its buffers, each after the one before it.
-void Integrator::iterate(std::uint32_t i, Pass from, std::uint32_t first_round) {
-    const auto runs = [&](Pass pass) { return from <= pass; };
+void Integrator::iterate(std::uint32_t i, Pass from, Pass to, std::uint32_t first_round) {
+    const auto runs = [&](Pass pass) { return from <= pass && pass <= to; };
     const auto round = [&](Pass pass) { return from == pass ? first_round : 0; };
     if (runs(Pass::eye)) launch_rounds("eye", pixels_, Pass::eye, i, round(Pass::eye));
     if (runs(Pass::photon)) launch_rounds("photon", params_.photon_lanes, Pass::photon, i, round(Pass::photon));
     if (runs(Pass::grid)) build_grid(i);
     if (runs(Pass::knn)) launch_rounds("knn", pixels_, Pass::knn, i, round(Pass::knn));
     if (runs(Pass::gather)) launch_rounds("gather", pixels_, Pass::gather, i, round(Pass::gather));
+    if (!runs(Pass::update)) return;
     launch("update", pixels_, {.iteration = i, .round = 0, .last_round = 1, .offset = plans_grid(i + 1) ? 1u : 0u, .count = 0});
     launch("advance", 1, {.iteration = i, .round = 0, .last_round = 1, .offset = 0, .count = 0});
 }
@@ -190,7 +194,7 @@ void Integrator::build_grid(std::uint32_t i) {
 void Integrator::scan(std::uint32_t i, std::uint32_t offset, std::uint32_t count) {
     const gpu::Launch push{.iteration = i, .round = 0, .last_round = 1, .offset = offset, .count = count};
     launch("scan_sums", params_.scan_blocks, push);
-    launch("scan_blocks", workgroup, push);
+    launch("scan_blocks", group_, push);
     launch("scan_apply", params_.scan_blocks, push);
 }
 
@@ -220,21 +224,36 @@ void Integrator::finish() {
 void Integrator::run(std::uint32_t count) {
     const std::uint32_t target = completed_ + count;
     commands_.begin();
-    for (std::uint32_t i = completed_; i < target; ++i) iterate(i, Pass::eye, 0);
+    for (std::uint32_t i = completed_; i < target; ++i) iterate(i, Pass::eye, Pass::update, 0);
     finish();
-    while (unblock()) {
+    while (unblock(Pass::update)) {
         // The blocked iteration has been finished; those behind it did nothing.
         if (completed_ >= target) break;
         commands_.begin();
-        for (std::uint32_t i = completed_; i < target; ++i) iterate(i, Pass::eye, 0);
+        for (std::uint32_t i = completed_; i < target; ++i) iterate(i, Pass::eye, Pass::update, 0);
         finish();
     }
     assert(completed_ == target);
 }
 
-/// Reads the status. Where a pass ran out of its budget: gives it more and finishes the iteration. Returns true where
-/// there was such a pass, so that iterations behind it have yet to run.
-bool Integrator::unblock() {
+std::vector<Integrator::PassHash> Integrator::run_hashed() {
+    const std::uint32_t iteration = completed_;
+    std::vector<PassHash> hashes;
+    for (const auto& [pass, name] : {std::pair(Pass::eye, "eye"), std::pair(Pass::photon, "photon"),
+                                     std::pair(Pass::grid, "grid"), std::pair(Pass::knn, "knn"),
+                                     std::pair(Pass::gather, "gather"), std::pair(Pass::update, "update")}) {
+        commands_.begin();
+        iterate(iteration, pass, pass, 0);
+        finish();
+        unblock(pass);
+        hashes.push_back({name, hash_of(pass)});
+    }
+    return hashes;
+}
+
+/// Reads the status. Where a pass ran out of its budget: gives it more and finishes the iteration up to pass `to`. Returns
+/// true where there was such a pass, so that iterations behind it have yet to run.
+bool Integrator::unblock(Pass to) {
     bool was_blocked = false;
     while (true) {
         gpu::Status status = buffer(BIND_STATUS).download_value<gpu::Status>();
@@ -263,7 +282,7 @@ bool Integrator::unblock() {
             first_round = 0;  // the paths start again and are the same
         }
         commands_.begin();
-        iterate(completed_, from, first_round);
+        iterate(completed_, from, to, first_round);
         if (!(blocked & PASS_CAPACITY) || (blocked & PASS_PHOTON)) rounds_[from] *= 2;
         finish();
     }
@@ -323,9 +342,9 @@ void Integrator::run_kernel(const std::string& kernel, std::uint64_t invocations
 
 void Integrator::run_from_grid() {
     commands_.begin();
-    iterate(completed_, Pass::grid, 0);
+    iterate(completed_, Pass::grid, Pass::update, 0);
     finish();
-    unblock();
+    unblock(Pass::update);
 }
 
 double Integrator::seconds() const {
@@ -343,6 +362,7 @@ void Integrator::fill(Report& report) const {
     report.emitted_paths = std::uint64_t(completed_) * params_.photons;
     report.stored_photons = stored_;
     report.rays = rays_;
+    report.invalid = invalid_;
     report.device_memory_bytes = device_.peak_bytes();
     report.device = device_.info().name;
     report.driver = device_.info().driver;

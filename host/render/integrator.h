@@ -1,10 +1,11 @@
 #pragma once
 // The iteration as launches: owns the device's buffers and kernels of one render and runs iterations of it.
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,13 +22,33 @@ namespace vkcppm {
 
 class Integrator {
 public:
-    /// Uploads the scene, allocates the buffers, compiles the pipelines. `settings` must be resolved.
+    /// Uploads the scene, allocates the buffers, compiles the pipelines. `settings` must be resolved. group: invocations
+    /// of a work group, a power of two; every size gives the same bits.
     /// Throws Error(out_of_device_memory) where the scene or the picture does not fit the device.
-    Integrator(Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings);
+    Integrator(Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings,
+               std::uint32_t group = workgroup);
 
     /// Runs `count` iterations in one submission, or more where work had to be finished in further rounds.
     /// Throws Error(device_lost), Error(internal) where a ray cannot be traced within the device's limits.
     void run(std::uint32_t count);
+
+    /// Hash of what a pass wrote for those after it.
+    struct PassHash {
+        std::string pass;  // eye, photon, grid, knn, gather or update
+        std::uint64_t hash = 0;
+    };
+
+    /// Runs one iteration, a submission a pass, and returns the hash of each. Two renders that do the same have the same,
+    /// whatever the device's lanes, work groups and budgets: what passes leave for themselves alone is not in it.
+    std::vector<PassHash> run_hashed();
+
+    /// All that an iteration leaves to the next on the device, as bytes: pixels, film, statistics, grid. What is hit,
+    /// stored or found within an iteration is made anew by each.
+    std::vector<std::byte> save() const;
+
+    /// Goes on from what save() and fill() gave: the iterations from there on give the bits they would have given.
+    /// Scene, camera and settings must be those of then. Throws Error(bad_scene) where `state` cannot be theirs.
+    void restore(const Report& report, std::span<const std::byte> state);
 
     std::uint32_t completed() const { return completed_; }
 
@@ -66,14 +87,15 @@ private:
     void allocate_photons();
     void compile(const Settings& settings, const Bvh& bvh, std::uint32_t features);
     void warm_up();
-    void iterate(std::uint32_t iteration, Pass from, std::uint32_t first_round);
+    void iterate(std::uint32_t iteration, Pass from, Pass to, std::uint32_t first_round);
     void launch(const std::string& kernel, std::uint64_t invocations, const gpu::Launch& push);
     void launch_rounds(const std::string& kernel, std::uint64_t invocations, Pass pass, std::uint32_t iteration,
                        std::uint32_t first_round);
     void build_grid(std::uint32_t iteration);
     void scan(std::uint32_t iteration, std::uint32_t offset, std::uint32_t count);
     void finish();
-    bool unblock();
+    bool unblock(Pass to);
+    std::uint64_t hash_of(Pass pass) const;
 
     Device& device_;
     Bindings bindings_;
@@ -83,6 +105,7 @@ private:
     std::map<std::string, Kernel> kernels_;
     std::map<Pass, std::uint32_t> rounds_;
     std::vector<PassReport> passes_;
+    std::uint32_t group_;                  // invocations of a work group
     double scale_ = 1.0;                   // frame units a metre
     std::uint64_t pixels_ = 0;
     std::uint32_t digit_bits_ = 7;

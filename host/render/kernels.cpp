@@ -3,6 +3,8 @@
 #include <array>
 #include <cassert>
 
+#include "core/fnv1a.h"
+
 namespace vkcppm {
 namespace {
 
@@ -88,6 +90,12 @@ const KernelModule& kernel_module(std::string_view name) {
     }
     assert(false);
     return modules.front();
+}
+
+std::uint64_t kernels_hash() {
+    std::uint64_t hash = fnv1a_start;
+    for (const KernelModule& module : modules) hash = fnv1a_of(module.spirv, hash);
+    return hash;
 }
 
 }  // namespace vkcppm

@@ -13,9 +13,12 @@
 namespace vkcppm {
 namespace {
 
-/// Wall and CPU seconds since it was made, without those that were spent in off_the_clock().
+/// Wall and CPU seconds since it was made, without those that were spent in off_the_clock(), after those of earlier runs.
 class Stopwatch {
 public:
+    Stopwatch(double wall_before, double cpu_before)
+        : wall_start_(wall_now() - wall_before), cpu_start_(cpu_now() - cpu_before) {}
+
     double wall() const { return wall_now() - wall_start_; }
     double cpu() const { return cpu_now() - cpu_start_; }
 
@@ -27,8 +30,8 @@ public:
     }
 
 private:
-    double wall_start_ = wall_now();
-    double cpu_start_ = cpu_now();
+    double wall_start_;
+    double cpu_start_;
 };
 
 /// True where the error after `done` iterations is wanted.
@@ -43,39 +46,66 @@ CurvePoint measure(Integrator& integrator, const Image& reference) {
 }  // namespace
 
 Rendering render(const Scene& scene, const Settings& wanted, Device& device, const KeepGoing& keep_going,
-                 const Measuring* measuring) {
+                 const Measuring* measuring, const Checkpointing& checkpointing, const OnPassHash& on_hash) {
     Rendering result;
     const double setup = wall_now();
     result.settings = resolve_settings(wanted, scene);
     const Settings& settings = result.settings;
     const FlatScene flat = flatten(scene);
     Integrator integrator(device, flat, camera_of(settings, scene), settings);
+    if (checkpointing.from) {
+        result.report = checkpointing.from->report;
+        result.curve = checkpointing.from->curve;
+        integrator.restore(result.report, checkpointing.from->state);
+    }
     result.report.setup_seconds = wall_now() - setup;
 
-    Stopwatch watch;
+    Stopwatch watch(result.report.wall_seconds, result.report.cpu_seconds);
+    const auto book = [&] {
+        result.report.wall_seconds = watch.wall();
+        result.report.cpu_seconds = watch.cpu();
+        integrator.fill(result.report);
+    };
+    double kept_at = watch.wall();
+    std::uint32_t kept = 0;  // iterations
+    const auto keep = [&] {
+        kept_at = watch.wall();
+        kept = integrator.completed();
+        book();
+        checkpointing.keep({result.report, result.curve, integrator.save()});
+    };
     CurvePoint latest;
     std::optional<LatestError> error;
     const auto take_measure = [&] {
         latest = measure(integrator, measuring->reference);
         error = {measuring->metric, measuring->metric->of(latest.error), latest.iterations};
     };
+    if (checkpointing.from && measuring) watch.off_the_clock(take_measure);
+    const auto ended = [&] {
+        if (integrator.completed() == 0) return false;
+        const bool late = settings.seconds && watch.wall() >= *settings.seconds;
+        const bool near = measuring && measuring->stop_at && error && error->value <= *measuring->stop_at;
+        return integrator.completed() >= settings.iterations || late || near;
+    };
     bool going = true;
-    while (going && integrator.completed() < settings.iterations) {
-        integrator.run(submission_size(integrator.completed(), watch.wall(), settings,
-                                       [&](std::uint32_t done) { return is_measured(measuring, done); }));
+    while (going && !ended()) {
+        if (on_hash) {
+            for (const auto& [pass, hash] : integrator.run_hashed()) on_hash(integrator.completed(), pass, hash);
+        } else {
+            integrator.run(submission_size(integrator.completed(), watch.wall(), settings,
+                                           [&](std::uint32_t done) { return is_measured(measuring, done); }));
+        }
         const std::uint32_t done = integrator.completed();
         if (is_measured(measuring, done)) {
             watch.off_the_clock(take_measure);
             if (is_snapshot(done)) result.curve.push_back(latest);
         }
-        const double wall = watch.wall();
-        const bool late = settings.seconds && wall >= *settings.seconds;
-        const bool near = measuring && measuring->stop_at && error->value <= *measuring->stop_at;
-        going = keep_going({done, settings.iterations, wall, error}) && !late && !near;
+        going = keep_going({done, settings.iterations, watch.wall(), error});
+        if (checkpointing.keep && watch.wall() - kept_at >= checkpointing.every) watch.off_the_clock(keep);
     }
-    result.report.wall_seconds = watch.wall();
-    result.report.cpu_seconds = watch.cpu();
-    if (measuring && result.curve.back().iterations < integrator.completed()) {
+    book();
+    if (checkpointing.keep && kept < integrator.completed()) keep();
+    if (measuring && (result.curve.empty() || result.curve.back().iterations < integrator.completed())) {
         if (latest.iterations < integrator.completed()) take_measure();
         result.curve.push_back(latest);
     }

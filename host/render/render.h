@@ -1,15 +1,19 @@
 #pragma once
 // The straight line: scene -> BVH -> flatten -> upload -> iterate -> resolve -> readback.
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/curve.h"
 #include "core/image.h"
 #include "core/metrics.h"
+#include "render/checkpoint.h"
 #include "render/report.h"
 #include "render/settings.h"
 #include "scene/scene.h"
@@ -42,6 +46,16 @@ struct Progress {
 /// Called between iterations; false ends the render after the iteration that is done.
 using KeepGoing = std::function<bool(const Progress&)>;
 
+/// Where a render goes on from, and what becomes of the states it passes.
+struct Checkpointing {
+    const Checkpoint* from = nullptr;                  // null: it starts afresh
+    double every = 60.0;                               // s of rendering between two that are kept
+    std::function<void(const Checkpoint&)> keep = {};  // called so often, and once the render has ended
+};
+
+/// Told the hash of what a pass of an iteration wrote; iterations count from 1.
+using OnPassHash = std::function<void(std::uint32_t iteration, std::string_view pass, std::uint64_t hash)>;
+
 struct Rendering {
     Image image;
     Settings settings;                      // as resolved: size and camera filled in
@@ -64,7 +78,11 @@ const Camera& camera_of(const Settings& settings, const Scene& scene);
 /// image that does not fit the device (out_of_device_memory), on a lost device (device_lost), on a reference of another
 /// size (usage). Where it is measured, submissions end at snapshots, or with every iteration where it stops at an
 /// error; the picture is the same, and neither Settings::seconds nor the report's seconds count the time it takes.
+/// From a checkpoint, of the same scene and settings but for their bounds `iterations` and `seconds`, it goes on as if it
+/// had never ended: iterations, seconds, totals and curve count from the first start. on_hash: a submission is a pass, and
+/// the hash of each is told (Integrator::run_hashed); the picture is the same.
 Rendering render(const Scene& scene, const Settings& settings, Device& device, const KeepGoing& keep_going,
-                 const Measuring* measuring = nullptr);
+                 const Measuring* measuring = nullptr, const Checkpointing& checkpointing = {},
+                 const OnPassHash& on_hash = {});
 
 }  // namespace vkcppm

@@ -20,6 +20,7 @@ struct Report {
     std::uint64_t emitted_paths = 0;
     std::uint64_t stored_photons = 0;
     std::uint64_t rays = 0;                 // rays traced by eye and photon passes
+    std::uint64_t invalid = 0;              // contributions that were not finite and were dropped
     double wall_seconds = 0.0;              // of the iterations: not loading, compiling, measuring, writing
     double cpu_seconds = 0.0;               // user + system of this process, over the same span
     double setup_seconds = 0.0;             // wall: BVH, upload, pipelines

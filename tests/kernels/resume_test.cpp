@@ -112,5 +112,18 @@ TEST_F(Determinism, TheSameSeedGivesTheSameBitsAndAnotherSeedOthers) {
     EXPECT_GT(differences(a, c), first.pixels() * 9 / 10) << "of " << first.pixels() << " pixels under another seed";
 }
 
+TEST_F(Determinism, EveryWorkGroupSizeGivesTheSameBits) {
+    Rig whole(room(), settings_of("cppm"), plain_device());
+    whole.integrator.run(iterations);
+    const auto expected = whole.integrator.save();
+    for (const std::uint32_t group : {16u, 256u}) {
+        Integrator other(plain_device(), whole.flat, whole.scene.cameras.at(0), whole.settings, group);
+        other.run(iterations);
+        EXPECT_EQ(differences(whole.integrator.resolve(), other.resolve()), 0u)
+            << "of " << whole.pixels() << " pixels, work groups of " << group;
+        EXPECT_TRUE(expected == other.save()) << "state, work groups of " << group;
+    }
+}
+
 }  // namespace
 }  // namespace vkcppm::test

@@ -1,0 +1,153 @@
+// What an integrator holds between passes and between iterations: told by hash, put down and taken up again.
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/fnv1a.h"
+#include "render/integrator.h"
+#include "shared/bindings.h"
+
+namespace vkcppm {
+namespace {
+
+/// What an iteration leaves to the next, in the order of save(); of the status the histogram of radii alone.
+constexpr std::uint32_t carried[] = {BIND_PIXELS, BIND_TALLY, BIND_MOMENTS, BIND_FILM, BIND_AOVS, BIND_GRID};
+
+/// True where kernels stay within their table of cells.
+bool fits(const gpu::Grid& grid, const gpu::Params& params) {
+    const double cells = double(grid.dims.x) * double(grid.dims.y) * double(grid.dims.z);
+    const bool dense = grid.dims.w == 0;
+    return std::isfinite(grid.cell) && grid.cell > 0.0f && std::isfinite(grid.inverse_cell) && cells >= 1.0 &&
+           grid.entries >= 1 && grid.entries <= params.cells &&
+           (dense ? cells <= double(grid.entries) : grid.dims.w == params.cells - 1 && grid.entries == params.cells);
+}
+
+class Hasher {
+public:
+    /// The first `bytes` bytes, or all.
+    void add(const Buffer& buffer, std::uint64_t bytes) { hash_ = fnv1a(buffer.download<std::uint8_t>(bytes), hash_); }
+    void add(const Buffer& buffer) { add(buffer, buffer.bytes()); }
+    template <typename T> void add(const T& value) { hash_ = fnv1a_of(std::span(&value, 1), hash_); }
+    std::uint64_t hash() const { return hash_; }
+
+private:
+    std::uint64_t hash_ = fnv1a_start;
+};
+
+}  // namespace
+
+std::vector<std::byte> Integrator::save() const {
+    std::vector<std::byte> state;
+    const auto append = [&](std::span<const std::byte> bytes) { state.insert(state.end(), bytes.begin(), bytes.end()); };
+    const gpu::Status status = buffers_.at(BIND_STATUS).download_value<gpu::Status>();
+    append(std::as_bytes(std::span(status.radius_histogram)));
+    for (const std::uint32_t binding : carried) {
+        const Buffer& buffer = buffers_.at(binding);
+        append(buffer.download<std::byte>(buffer.bytes()));
+    }
+    return state;
+}
+
+void Integrator::restore(const Report& report, std::span<const std::byte> state) {
+    gpu::Status status{};
+    std::uint64_t bytes = sizeof(status.radius_histogram);
+    for (const std::uint32_t binding : carried) bytes += buffers_.at(binding).bytes();
+    if (state.size() != bytes) {
+        throw Error(ExitCode::bad_scene,
+                    fmt::format("the checkpoint's state has {} bytes, that of this render {}", state.size(), bytes));
+    }
+    const auto take = [&](std::uint64_t count) {
+        const std::span<const std::byte> taken = state.first(count);
+        state = state.subspan(count);
+        return taken;
+    };
+    const auto histogram = take(sizeof(status.radius_histogram));
+    std::copy(histogram.begin(), histogram.end(), reinterpret_cast<std::byte*>(status.radius_histogram));
+    for (const std::uint32_t binding : carried) buffer(binding).upload(take(buffer(binding).bytes()));
+    const auto grid = buffer(BIND_GRID).download_value<gpu::Grid>();
+    if (!fits(grid, params_)) {
+        throw Error(ExitCode::bad_scene, fmt::format("the checkpoint's grid of {} x {} x {} cells in {} entries is not one "
+                                                     "of this render, which has room for {}",
+                                                     grid.dims.x, grid.dims.y, grid.dims.z, grid.entries, params_.cells));
+    }
+    status.completed = std::uint32_t(report.iterations);
+    buffer(BIND_STATUS).upload_value(status);
+    completed_ = status.completed;
+    rays_ = report.rays;
+    stored_ = report.stored_photons;
+    invalid_ = report.invalid;
+    for (PassReport& pass : passes_) {
+        for (const PassReport& then : report.passes) {
+            if (pass.name == then.name) pass = then;
+        }
+    }
+}
+
+std::uint64_t Integrator::hash_of(Pass pass) const {
+    Hasher hasher;
+    const auto add_statistics = [&] {
+        for (const std::uint32_t binding : {BIND_PIXELS, BIND_TALLY, BIND_MOMENTS}) hasher.add(buffers_.at(binding));
+    };
+    switch (pass) {
+        case Pass::eye: {
+            for (const std::uint32_t binding : {BIND_HIT_POSITION, BIND_HIT_WEIGHT, BIND_HIT_EMISSION, BIND_AOVS}) {
+                hasher.add(buffers_.at(binding));
+            }
+            const Buffer& surfaces = buffers_.at(BIND_HIT_SURFACE);
+            if (surfaces.bytes() < pixels_ * sizeof(gpu::HitSurface)) break;
+            // Pixels that gather nothing hold the surface of an earlier iteration.
+            const auto hits = buffers_.at(BIND_HIT_POSITION).download<gpu::HitPosition>(pixels_);
+            const auto surface = surfaces.download<gpu::HitSurface>(pixels_);
+            for (std::uint64_t i = 0; i < pixels_; ++i) {
+                if (hits[i].state & HIT_DIFFUSE) hasher.add(surface[i]);
+            }
+            break;
+        }
+        case Pass::photon: {
+            // In the order of paths, whatever the lanes and their slots.
+            const std::uint64_t lanes = params_.photon_lanes, capacity = params_.photon_capacity;
+            const std::uint64_t counts_at = std::uint64_t(params_.cells) + 1;
+            const auto counters = buffers_.at(BIND_COUNTERS).download<std::uint32_t>(counts_at + lanes);
+            const auto photons = buffers_.at(BIND_PHOTONS).download<gpu::Photon>(lanes * capacity);
+            const auto flux = buffers_.at(BIND_PHOTON_FLUX).download<gpu::PhotonFlux>(lanes * capacity);
+            for (std::uint64_t lane = 0; lane < lanes; ++lane) {
+                const std::uint64_t count = counters[counts_at + lane];
+                assert(count <= capacity);
+                for (std::uint64_t i = lane * capacity; i < lane * capacity + count; ++i) {
+                    hasher.add(photons[i]);
+                    hasher.add(flux[i]);
+                }
+            }
+            break;
+        }
+        case Pass::grid: {
+            const auto grid = buffers_.at(BIND_GRID).download_value<gpu::Grid>();
+            const auto starts = buffers_.at(BIND_COUNTERS).download<std::uint32_t>(std::uint64_t(grid.entries) + 1);
+            const std::uint64_t photons = starts.back();
+            hasher.add(grid);
+            hasher.add(buffers_.at(BIND_COUNTERS), starts.size() * sizeof(std::uint32_t));
+            hasher.add(buffers_.at(BIND_SORTED), photons * sizeof(gpu::Photon));
+            hasher.add(buffers_.at(BIND_SORTED_FLUX), photons * sizeof(gpu::PhotonFlux));
+            break;
+        }
+        case Pass::knn: add_statistics(); break;
+        case Pass::gather: {
+            hasher.add(buffers_.at(BIND_GATHERED));
+            add_statistics();
+            break;
+        }
+        case Pass::update: {
+            hasher.add(buffers_.at(BIND_FILM));
+            add_statistics();
+            hasher.add(buffers_.at(BIND_STATUS).download_value<gpu::Status>().radius_histogram);
+            break;
+        }
+    }
+    return hasher.hash();
+}
+
+}  // namespace vkcppm
