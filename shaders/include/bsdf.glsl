@@ -54,7 +54,9 @@ const float CLEARCOAT_R0 = 0.04;
 // Reflectance of the clearcoat, and what it leaves to the lobes below.
 float clearcoat_fresnel(Bsdf b, float cosine) {
     if ((FEATURES & FEATURE_CLEARCOAT) == 0u) return 0.0;
-    return b.clearcoat * (CLEARCOAT_R0 + (1.0 - CLEARCOAT_R0) * schlick_power(cosine));
+    // precise: versions of Mesa rearrange it, each in its own way, and rounding differs.
+    precise float fresnel = b.clearcoat * (CLEARCOAT_R0 + (1.0 - CLEARCOAT_R0) * schlick_power(cosine));
+    return fresnel;
 }
 
 float below_clearcoat(Bsdf b, float cosine) { return 1.0 - clearcoat_fresnel(b, cosine); }

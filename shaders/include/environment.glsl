@@ -1,11 +1,13 @@
 // Light from infinitely far away, constant over each pixel of a map. Reads environment and its alias table.
+#include "include/angle.glsl"
+
 layout(binding = BIND_ENVIRONMENT) uniform samplerBuffer environment;
 layout(binding = BIND_ENVIRONMENT_ALIAS) uniform usamplerBuffer environment_alias;
 
 // Radiance that arrives from `direction`, a unit vector away from the scene.
 vec3 environment_radiance(vec3 direction) {
-    // The polar angle by atan: devices know acos to 1e-4 only.
-    vec2 uv = vec2(0.5 + atan(direction.z, direction.x) / (2.0 * PI), atan(length(direction.xz), direction.y) / PI);
+    // The polar angle not by acos: devices know it to 1e-4 only.
+    vec2 uv = vec2(0.5 + angle_of(direction.z, direction.x) / (2.0 * PI), angle_of(length(direction.xz), direction.y) / PI);
     uvec2 pixel = min(uvec2(uv * vec2(params.environment)), params.environment - 1u);
     return texelFetch(environment, int(pixel.y * params.environment.x + pixel.x)).rgb;
 }
