@@ -1,5 +1,6 @@
 // Renders that are ended at any moment and taken up again, through the program.
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #include <fmt/format.h>
@@ -28,8 +30,8 @@ using namespace test;
 
 class Checkpoint : public ProgramTest {
 protected:
-    static Words words(Words more) {
-        Words words{scene("slab_floor"), "--size", "32x24", "--photons", "500"};
+    static Words words(Words more, const std::string& size = "32x24") {
+        Words words{scene("slab_floor"), "--size", size, "--photons", "500"};
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }
@@ -68,23 +70,32 @@ TEST_F(Checkpoint, EveryEstimatorGoesOnWithTheSameBytes) {
     }
 }
 
-// kill -9 at 20 moments: ten after a random time since the start of the program, ten after one since its first iteration.
-// Checkpoints are written all the time, so that many of them hit a write. Nothing is asked of the moments.
+// kill -9 at 20 moments: ten after a random time since the start of the program, ten after one since it began to write a
+// checkpoint of 2 MB, which it does after every submission. Nothing is asked of the moments.
 TEST_F(Checkpoint, SurvivesBeingKilledAtAnyMoment) {
     std::mt19937 random(7);
-    std::uniform_int_distribution<int> since_start(0, 300'000), since_first(0, 60'000);  // microseconds
+    std::uniform_int_distribution<int> since_start(0, 300'000), since_write(0, 12'000);  // microseconds
+    const auto pause = [](int microseconds) { std::this_thread::sleep_for(std::chrono::microseconds(microseconds)); };
+    const auto there = [&](std::string_view ending) {
+        const std::set<std::string> names = names_in(folder_.path());
+        return std::ranges::any_of(names, [&](const std::string& name) { return name.ends_with(ending); });
+    };
+    const std::string size = "160x120";
     Words next{"--checkpoint", "a.ckpt"};
     int hits_in_writing = 0;
     for (int kill = 0; kill < 20; ++kill) {
-        Words all = words({"--iterations", "2147483647", "--checkpoint-every", "0.001ms", "-o", "a.exr"});
+        Words all = words({"--iterations", "2147483647", "--checkpoint-every", "0.001ms", "-o", "a.exr"}, size);
         all.insert(all.begin(), VKCPPM_PROGRAM);
         all.insert(all.end(), next.begin(), next.end());
         Process process(all, folder_.path());
         if (kill % 2 == 0) {
             ASSERT_TRUE(process.wait_for_message("iterations (")) << process.wait().err;
-            std::this_thread::sleep_for(std::chrono::microseconds(since_first(random)));
+            for (int i = 0; i < 20'000 && !there(kill == 0 ? ".ckpt" : ".part"); ++i) {
+                pause(50);
+            }
+            pause(since_write(random));
         } else {
-            std::this_thread::sleep_for(std::chrono::microseconds(since_start(random)));
+            pause(since_start(random));
         }
         process.send(SIGKILL);
         const ProcessResult result = process.wait();
@@ -100,10 +111,10 @@ TEST_F(Checkpoint, SurvivesBeingKilledAtAnyMoment) {
         }
     }
     ASSERT_EQ(next.front(), "--resume") << "no checkpoint was ever written";
-    const ProcessResult resumed = render({"--iterations", "1", "--resume", "a.ckpt", "-o", "a.exr", "--hash"});
+    const ProcessResult resumed = run(words({"--iterations", "1", "--resume", "a.ckpt", "-o", "a.exr", "--hash"}, size));
     expect_done(resumed);
     EXPECT_TRUE(contains(resumed.err, "more than --iterations 1")) << resumed.err;
-    const ProcessResult whole = render({"--iterations", done("a.exr"), "-o", "b.exr", "--hash"});
+    const ProcessResult whole = run(words({"--iterations", done("a.exr"), "-o", "b.exr", "--hash"}, size));
     expect_done(whole);
     EXPECT_EQ(picture_hash(resumed), picture_hash(whole)) << "after " << done("a.exr") << " iterations";
     EXPECT_EQ(read_exr(folder_ / "a.exr"), read_exr(folder_ / "b.exr"));
