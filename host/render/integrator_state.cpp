@@ -109,15 +109,16 @@ std::uint64_t Integrator::hash_of(Pass pass) const {
         }
         case Pass::photon: {
             // In the order of paths, whatever the lanes and their slots.
-            const std::uint64_t lanes = params_.photon_lanes, capacity = params_.photon_capacity;
-            const std::uint64_t counts_at = std::uint64_t(params_.cells) + 1;
-            const auto counters = buffers_.at(BIND_COUNTERS).download<std::uint32_t>(counts_at + lanes);
-            const auto photons = buffers_.at(BIND_PHOTONS).download<gpu::Photon>(lanes * capacity);
-            const auto flux = buffers_.at(BIND_PHOTON_FLUX).download<gpu::PhotonFlux>(lanes * capacity);
-            for (std::uint64_t lane = 0; lane < lanes; ++lane) {
-                const std::uint64_t count = counters[counts_at + lane];
-                assert(count <= capacity);
-                for (std::uint64_t i = lane * capacity; i < lane * capacity + count; ++i) {
+            const std::uint64_t paths = params_.photons, counts_at = std::uint64_t(params_.cells) + 1;
+            const std::uint64_t slots_at = counts_at + paths + 1;
+            const auto counters = buffers_.at(BIND_COUNTERS).download<std::uint32_t>(slots_at + paths);
+            const std::uint64_t slots = std::uint64_t(params_.photon_lanes) * params_.photon_capacity;
+            const auto photons = buffers_.at(BIND_PHOTONS).download<gpu::Photon>(slots);
+            const auto flux = buffers_.at(BIND_PHOTON_FLUX).download<gpu::PhotonFlux>(slots);
+            for (std::uint64_t path = 0; path < paths; ++path) {
+                const std::uint64_t begin = counters[slots_at + path], end = begin + counters[counts_at + path];
+                assert(end <= slots);
+                for (std::uint64_t i = begin; i < end; ++i) {
                     hasher.add(photons[i]);
                     hasher.add(flux[i]);
                 }
