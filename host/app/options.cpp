@@ -22,6 +22,7 @@ namespace {
 using Words = std::vector<std::string>;
 
 constexpr double race_seconds = 60.0;  // of each entrant with each seed, where nothing else bounds them
+constexpr std::uint32_t most_seeds = 10000;  // of a race: more is taken for a slip
 
 constexpr const char* footer = R"(Exit codes:
   0 done   2 usage   65 bad scene   66 no such file   69 no usable Vulkan device   70 internal
@@ -57,6 +58,22 @@ double parse_real(const std::string& option, const std::string& text) {
         refuse(option, text, "a finite number");
     }
     return number;
+}
+
+std::string parse_name(const std::string& option, const std::string& text) {
+    if (text.empty()) {
+        refuse(option, text, "a name");  // an unset variable of a shell must not mean the default
+    }
+    return text;
+}
+
+double parse_exposure(const std::string& option, const std::string& text) {
+    constexpr double most = 128.0;  // stops: any float becomes white or black
+    const double stops = parse_real(option, text);
+    if (std::abs(stops) > most) {
+        refuse(option, text, fmt::format("a number from {} to {}", -most, most));
+    }
+    return stops;
 }
 
 Extent parse_size(const std::string& option, const std::string& text) {
@@ -158,8 +175,7 @@ void add_common(CLI::App& app, Settings& settings) {
         fmt::format("Light paths emitted an iteration (default: {})", standard.photons));
     add(app, "--size", "WxH", settings.size, parse_size,
         "Pixels (default: 512 on the longer side, in the camera's aspect)");
-    app.add_option("--camera", settings.camera, "Camera by name or index (default: the first)")
-        ->type_name("NAME|INDEX");
+    add(app, "--camera", "NAME|INDEX", settings.camera, parse_name, "Camera by name or index (default: the first)");
     add(app, "--aperture", "METRES", settings.aperture, parse_real,
         "Diameter of the lens; what is not at --focus-distance is blurred (default: 0, all is sharp)");
     add(app, "--focus-distance", "METRES", settings.focus_distance, parse_real,
@@ -190,8 +206,8 @@ void add_parameters(CLI::App& app, Settings& settings) {
 }
 
 void add_device(CLI::App& app, Device::Options& device) {
-    app.add_option("--device", device.select, "Vulkan device; vkcppm devices lists them (default: the fastest)")
-        ->type_name("NAME|INDEX|uuid:...");
+    add(app, "--device", "NAME|INDEX|uuid:...", device.select, parse_name,
+        "Vulkan device; vkcppm devices lists them (default: the fastest)");
     app.add_flag("--validate", device.validate,
                  "Load the validation layer; its messages make the exit code 70");
 }
@@ -214,7 +230,7 @@ Options parse_render(const Words& words) {
     app.add_option("-o", output, "The picture, linear float EXR (default: the scene's name with .exr, here)")
         ->type_name("OUT.exr");
     app.add_option("--png", options.png, "The picture for the eye, 8-bit sRGB as well")->type_name("FILE.png");
-    add(app, "--exposure", "EV", options.exposure, parse_real, "Stops by which the PNG is brightened (default: 0)")
+    add(app, "--exposure", "EV", options.exposure, parse_exposure, "Stops by which the PNG is brightened (default: 0)")
         ->needs("--png");
     app.add_option("--estimator", options.settings.estimator,
                    estimator_help() + fmt::format("\n(default: {})", standard.estimator))
@@ -353,7 +369,7 @@ Options parse_race(const Words& words) {
     add(app, "--make-reference", "TIME", options.make_reference, parse_seconds,
         "Make it first, in this time, as vkcppm reference does, with a seed that does not race: DIR/reference.exr")
         ->excludes("--reference");
-    add(app, "--exposure", "EV", options.exposure, parse_real, "Stops by which pictures are brightened (default: 0)");
+    add(app, "--exposure", "EV", options.exposure, parse_exposure, "Stops by which pictures are brightened (default: 0)");
     add_common(app, settings);
     add_parameters(app, settings);
     add_device(app, options.device);
@@ -361,8 +377,8 @@ Options parse_race(const Words& words) {
     if (!parse(app, words, text)) {
         return TextOptions{text};
     }
-    if (options.race.seeds == 0) {
-        refuse("--seeds", "0", "at least 1");
+    if (options.race.seeds == 0 || options.race.seeds > most_seeds) {
+        refuse("--seeds", std::to_string(options.race.seeds), fmt::format("a number from 1 to {}", most_seeds));
     }
     if (!iterations && !settings.seconds) {
         settings.seconds = race_seconds;

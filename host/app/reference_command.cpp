@@ -39,7 +39,7 @@ void execute(const ReferenceOptions& options) {
     check_outputs({options.scene.file, options.scene.environment}, {{"-o", options.output}, {"--stats", options.stats}});
     const Scene scene = load_scene(options.scene);
     print_warnings(scene.warnings);
-    resolve_settings(options.settings.render, scene);  // a bad value is told before the device is asked for
+    resolve_reference(options.settings, scene);  // a bad value is told before the device is asked for
     Device device(options.device);
     require_validation(options.device, device);
     const Reference reference = refine_with_progress(scene, options, device);

@@ -43,7 +43,7 @@ bool begins_with(const std::vector<std::uint8_t>& bytes, std::string_view magic)
 
 Image decode(const std::vector<std::uint8_t>& bytes, const fs::path& file) {
     if (begins_with(bytes, "\x76\x2f\x31\x01")) {
-        return read_exr(file);
+        return read_exr(file, most_environment_pixels);
     }
     if (begins_with(bytes, "#?")) {
         return decode_hdr(bytes, file, most_environment_pixels);
@@ -53,11 +53,6 @@ Image decode(const std::vector<std::uint8_t>& bytes, const fs::path& file) {
 
 void check(const Image& image, const fs::path& file) {
     const Extent& size = image.extent;
-    if (size.pixels() > most_environment_pixels) {
-        throw Error(ExitCode::bad_scene,
-                    fmt::format("{}: it is {}x{} pixels, more than {} in all; scale it down", file.string(), size.width,
-                                size.height, most_environment_pixels));
-    }
     for (std::size_t i = 0; i < image.rgb.size(); ++i) {
         const glm::vec3& v = image.rgb[i];
         const auto is_radiance = [](float x) { return x >= 0.0f && std::isfinite(x); };

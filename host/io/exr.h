@@ -1,6 +1,7 @@
 #pragma once
 // OpenEXR files: float channels with text attributes.
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -32,9 +33,13 @@ void write_exr(const std::filesystem::path& file, const ExrChannels& channels, c
                ExrDepth depth = ExrDepth::full);
 void write_exr(const std::filesystem::path& file, const Image& image, const ExrAttributes& attributes = {});
 
+/// Pixels a picture may have; its three floats a pixel take 1.5 GiB then.
+inline constexpr std::uint64_t most_exr_pixels = std::uint64_t(1) << 27;
+
 /// Reads R, G and B, float or half, scan lines or tiles. The picture is the display window; what the data window does
-/// not cover is black. Throws Error: no_input where the file is missing, bad_scene where it is not such a picture.
-Image read_exr(const std::filesystem::path& file);
+/// not cover is black. Throws Error: no_input where the file is missing, bad_scene where it is not such a picture or has
+/// more than `most_pixels` pixels.
+Image read_exr(const std::filesystem::path& file, std::uint64_t most_pixels = most_exr_pixels);
 
 /// The text attributes of a file, sorted by name. Throws like read_exr.
 ExrAttributes read_exr_attributes(const std::filesystem::path& file);

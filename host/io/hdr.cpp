@@ -64,12 +64,18 @@ private:
         return byte;
     }
 
+    /// A piece of the header, short enough for a message.
+    static std::string shown(std::string_view text) {
+        constexpr std::size_t longest = 60;
+        return std::string(text.substr(0, longest)) + (text.size() > longest ? "..." : "");
+    }
+
     double take_factor(std::string_view& text) const {
         text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
         double factor = 0.0;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), factor);
         if (error != std::errc() || !(factor > 0.0) || !std::isfinite(factor)) {
-            fail(fmt::format("'{}' in its header is not a factor greater than 0", text));
+            fail(fmt::format("'{}' in its header is not a factor greater than 0", shown(text)));
         }
         text.remove_prefix(std::size_t(end - text.data()));
         return factor;
@@ -87,7 +93,7 @@ private:
             const std::string_view name = text.substr(0, equals);
             text.remove_prefix(equals == text.npos ? text.size() : equals + 1);
             if (name == "FORMAT" && !text.starts_with("32-bit_rle_rgbe")) {
-                fail(fmt::format("its FORMAT is {}; this program reads 32-bit_rle_rgbe", text));
+                fail(fmt::format("its FORMAT is {}; this program reads 32-bit_rle_rgbe", shown(text)));
             } else if (name == "EXPOSURE") {
                 exposure *= take_factor(text);
             } else if (name == "COLORCORR") {
@@ -115,7 +121,7 @@ private:
         Extent size;
         if (!take_side(text, "-Y ", size.height) || !take_side(text, " +X ", size.width) ||
             !(text.empty() || text == "\r")) {
-            fail(fmt::format("its size is '{}'; this program reads -Y HEIGHT +X WIDTH", line));
+            fail(fmt::format("its size is '{}'; this program reads -Y HEIGHT +X WIDTH", shown(line)));
         }
         if (size.pixels() > most_pixels) {
             fail(fmt::format("it is {}x{} pixels, more than {} in all; scale it down", size.width, size.height,

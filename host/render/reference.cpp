@@ -195,25 +195,6 @@ double quantile(std::vector<double> values, double q) {
     return *at;
 }
 
-ReferenceSettings resolve(const ReferenceSettings& wanted, const Scene& scene) {
-    ReferenceSettings settings = wanted;
-    settings.render = resolve_settings(wanted.render, scene);
-    constexpr std::uint32_t least_samples = least_batches * PathTracer::batch, most_samples = 1u << 24;
-    constexpr std::uint32_t least_iterations = least_batches * iterations_a_batch;
-    if (settings.samples < least_samples || settings.samples > most_samples) {
-        throw Error(ExitCode::usage,
-                    fmt::format("--samples {} is outside {}..{}", settings.samples, least_samples, most_samples));
-    }
-    if (settings.render.iterations < least_iterations) {
-        throw Error(ExitCode::usage,
-                    fmt::format("--iterations {} is less than {}", settings.render.iterations, least_iterations));
-    }
-    if (!(settings.trust > 0.0)) {
-        throw Error(ExitCode::usage, fmt::format("--trust {} is not greater than 0", settings.trust));
-    }
-    return settings;
-}
-
 /// Squares, a channel, of what an error of one standard error does to the 8-bit sRGB encoding, before it is rounded.
 glm::dvec3 srgb_squares(const glm::dvec3& mean, const glm::dvec3& standard_error) {
     glm::dvec3 squares;
@@ -262,11 +243,30 @@ void fill_statistics(Reference& result, const Paths& paths, const Caustics* caus
 
 }  // namespace
 
+ReferenceSettings resolve_reference(const ReferenceSettings& wanted, const Scene& scene) {
+    ReferenceSettings settings = wanted;
+    settings.render = resolve_settings(wanted.render, scene);
+    constexpr std::uint32_t least_samples = least_batches * PathTracer::batch, most_samples = 1u << 24;
+    constexpr std::uint32_t least_iterations = least_batches * iterations_a_batch;
+    if (settings.samples < least_samples || settings.samples > most_samples) {
+        throw Error(ExitCode::usage,
+                    fmt::format("--samples {} is outside {}..{}", settings.samples, least_samples, most_samples));
+    }
+    if (settings.render.iterations < least_iterations) {
+        throw Error(ExitCode::usage,
+                    fmt::format("--iterations {} is less than {}", settings.render.iterations, least_iterations));
+    }
+    if (!(settings.trust > 0.0)) {
+        throw Error(ExitCode::usage, fmt::format("--trust {} is not greater than 0", settings.trust));
+    }
+    return settings;
+}
+
 Reference make_reference(const Scene& scene, const ReferenceSettings& wanted, Device& device,
                          const KeepRefining& keep_refining) {
     const double setup = wall_now();
     Reference result;
-    result.settings = resolve(wanted, scene);
+    result.settings = resolve_reference(wanted, scene);
     const Settings& settings = result.settings.render;
     const Camera& camera = camera_of(settings, scene);
     const FlatScene flat = flatten(scene);

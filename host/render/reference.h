@@ -62,6 +62,9 @@ struct ReferenceProgress {
 /// Called between batches; false ends it with what there is, once there are enough batches to tell an error.
 using KeepRefining = std::function<bool(const ReferenceProgress&)>;
 
+/// `settings` with defaults resolved. Throws Error(usage) with option, value and range where one is out of it.
+ReferenceSettings resolve_reference(const ReferenceSettings& settings, const Scene& scene);
+
 /// Throws Error as render() does. Without `seconds` the same settings on the same device give the same bits; with them
 /// the numbers of samples and iterations that were done do, given as bounds.
 Reference make_reference(const Scene& scene, const ReferenceSettings& settings, Device& device,

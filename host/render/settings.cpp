@@ -17,16 +17,19 @@ namespace {
 
 constexpr std::uint32_t default_longer_side = 512;
 constexpr std::uint32_t max_side = 65536;
+constexpr std::size_t max_pixels = std::size_t(1) << 27;
+constexpr double longest = 1e9;  // m, of a lens; one over it is the shortest
 
 template <typename T>
 void check_range(const char* option, T value, T low, T high) {
-    if (value < low || value > high) {
+    if (!(value >= low && value <= high)) {
         throw Error(ExitCode::usage, fmt::format("{} {} is outside {}..{}", option, value, low, high));
     }
 }
 
+/// The kernels take the value as a float, which must not be an end of the range either.
 void check_open(const char* option, double value, double low, double high) {
-    if (!(value > low && value < high)) {
+    if (!(float(value) > float(low) && float(value) < float(high))) {
         throw Error(ExitCode::usage, fmt::format("{} {} is not between {} and {}", option, value, low, high));
     }
 }
@@ -57,13 +60,8 @@ Extent default_size(const Camera& camera) {
 
 /// A lens has an opening and a distance at which it is sharp, or neither.
 void check_lens(double aperture, const std::optional<double>& focus_distance) {
-    if (!(aperture >= 0.0 && std::isfinite(aperture))) {
-        throw Error(ExitCode::usage, fmt::format("--aperture {} is not 0 or a finite number greater than 0", aperture));
-    }
-    if (focus_distance && !(*focus_distance > 0.0 && std::isfinite(*focus_distance))) {
-        throw Error(ExitCode::usage,
-                    fmt::format("--focus-distance {} is not a finite number greater than 0", *focus_distance));
-    }
+    check_range("--aperture", aperture, 0.0, longest);
+    if (focus_distance) check_range("--focus-distance", *focus_distance, 1.0 / longest, longest);
     if (aperture > 0.0 && !focus_distance) {
         throw Error(ExitCode::usage, fmt::format("--aperture {} needs --focus-distance", aperture));
     }
@@ -106,6 +104,10 @@ Settings resolve_settings(const Settings& settings, const Scene& scene) {
     if (!settings.size) resolved.size = default_size(scene.cameras.at(camera));
     check_range<std::uint32_t>("--size: width", resolved.size->width, 1, max_side);
     check_range<std::uint32_t>("--size: height", resolved.size->height, 1, max_side);
+    if (resolved.size->pixels() > max_pixels) {
+        throw Error(ExitCode::usage, fmt::format("--size: {}x{} are {} pixels; the limit is {}", resolved.size->width,
+                                                 resolved.size->height, resolved.size->pixels(), max_pixels));
+    }
     return resolved;
 }
 

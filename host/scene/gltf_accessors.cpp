@@ -29,7 +29,7 @@ template <int N> const SharedVectors<N>& GltfAccessors::vectors(int accessor, st
     if (!cached) {
         const AccessorView source = view(accessor, N, use);
         read_vectors_ += source.count;
-        check_total(read_vectors_, max_read_vectors, "vectors that the meshes read", file_.name);
+        check_total(read_vectors_, max_read_vectors, "vectors that the meshes read", file_);
         cached = std::make_shared<const std::vector<glm::vec<N, double>>>(read_vectors<N>(source));
     }
     return cached;
@@ -79,9 +79,6 @@ AccessorView GltfAccessors::view(int accessor, int components, std::string_view 
     }
     if (std::size_t(source.bufferView) < views_.count()) {
         view.base = elements(source.bufferView, source.byteOffset, source.count, size, object, false);
-    } else if (source.count > max_zero_elements) {
-        bad_scene(file_.name, object + ".count", fmt::to_string(source.count),
-                  fmt::format("without a bufferView the limit is {}", max_zero_elements));
     }
     if (source.sparse.isSparse) {
         const auto& sparse = source.sparse;

@@ -8,6 +8,7 @@
 #include <tiny_gltf.h>
 
 #include "scene/bad_scene.h"
+#include "scene/gltf_values.h"
 
 namespace vkcppm {
 
@@ -16,11 +17,11 @@ namespace {
 /// A frame of orthonormal columns x, y, z whose z is along `z` and whose y is as near to `up` as that allows; nothing
 /// where the two are zero or parallel.
 std::optional<glm::dmat3> orthonormal_frame(const glm::dvec3& z, const glm::dvec3& up) {
-    const glm::dvec3 unit_z = z / glm::length(z);
-    const glm::dvec3 unit_up = up / glm::length(up);
+    const glm::dvec3 unit_z = unit_or_zero(z);
+    const glm::dvec3 unit_up = unit_or_zero(up);
     const glm::dvec3 x = glm::cross(unit_up, unit_z);
     const double sine = glm::length(x);
-    if (!(sine > 1e-9)) return std::nullopt;  // NaN where a length was zero
+    if (!(sine > 1e-9)) return std::nullopt;
     return glm::dmat3(x / sine, glm::cross(unit_z, x / sine), unit_z);
 }
 

@@ -1,7 +1,9 @@
 #include "scene/gltf_file.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cstring>
+#include <map>
 #include <optional>
 #include <span>
 
@@ -9,6 +11,7 @@
 #include "scene/bad_scene.h"
 #include "scene/gltf_schema.h"
 #include "scene/resource.h"
+#include "scene/uri.h"
 
 namespace vkcppm {
 
@@ -106,6 +109,8 @@ json parse_json(std::span<const std::uint8_t> text, const std::string& file) {
         for (char& c : reason) {
             if (std::iscntrl(static_cast<unsigned char>(c))) c = ' ';
         }
+        constexpr std::size_t beginning = 200, end = 60;  // between lies what was read last, up to the whole file
+        if (reason.size() > beginning + end) reason.replace(beginning, reason.size() - beginning - end, " ... ");
         bad_scene(file, "the file", "not glTF", reason);
     }
 }
@@ -125,34 +130,61 @@ void check_version(const json& document, const std::string& file) {
     }
 }
 
-/// The bytes that buffers[i] names, byteLength or as many as there are; nothing, and why, where there are none at all.
-/// An external file's go into `hash` as well.
-std::optional<Bytes> read_buffer(const json& buffer, std::size_t i,
-                                 const std::optional<std::span<const std::uint8_t>>& binary, const std::string& file,
-                                 std::uint64_t& hash, std::string& why) {
-    if (const auto uri = buffer.find("uri"); uri != buffer.end()) {
-        return read_uri(*uri, buffer["byteLength"].get<std::size_t>(), fmt::format("buffers[{}].uri", i), file, hash,
-                        why);
+/// Reads the bytes of buffers, those of a file that several buffers name once for all.
+class BufferReader {
+public:
+    BufferReader(const json& buffers, std::optional<std::span<const std::uint8_t>> binary, GltfFile& file)
+        : buffers_(buffers), binary_(binary), file_(file) {
+        for (const json& buffer : buffers) {
+            if (!buffer.contains("uri")) continue;
+            std::size_t& needed = needed_[buffer["uri"].get_ref<const std::string&>()];
+            needed = std::max(needed, buffer["byteLength"].get<std::size_t>());
+        }
     }
-    static const json::json_pointer fallback_pointer("/extensions/EXT_meshopt_compression/fallback");
-    if (buffer.value(fallback_pointer, false)) {
-        why = "it is a fallback for programs without EXT_meshopt_compression, and holds nothing";
-        return std::nullopt;
+
+    /// The bytes that buffers[i] names, byteLength or as many as there are; null, and why, where there are none at all.
+    /// An external file's go into the file's hash as well.
+    std::shared_ptr<const Bytes> read(std::size_t i, std::string& why) {
+        const json& buffer = buffers_[i];
+        if (const auto uri = buffer.find("uri"); uri != buffer.end()) return read_named(uri->get_ref<const std::string&>(), i, why);
+        static const json::json_pointer fallback_pointer("/extensions/EXT_meshopt_compression/fallback");
+        if (buffer.value(fallback_pointer, false)) {
+            why = "it is a fallback for programs without EXT_meshopt_compression, and holds nothing";
+            return nullptr;
+        }
+        if (i == 0 && binary_) return std::make_shared<const Bytes>(binary_->begin(), binary_->end());
+        why = "it has no uri, and the file no binary chunk for it";
+        return nullptr;
     }
-    if (i == 0 && binary) return Bytes(binary->begin(), binary->end());
-    why = "it has no uri, and the file no binary chunk for it";
-    return std::nullopt;
-}
+
+private:
+    std::shared_ptr<const Bytes> read_named(const std::string& uri, std::size_t i, std::string& why) {
+        std::shared_ptr<const Bytes>& known = read_[uri];
+        if (known) return known;
+        std::optional<Bytes> bytes =
+            read_uri(uri, needed_[uri], fmt::format("buffers[{}].uri", i), file_.name, file_.hash, why);
+        if (!bytes) return nullptr;
+        if (!is_data_uri(uri)) file_.bytes += bytes->size();
+        return known = std::make_shared<const Bytes>(std::move(*bytes));
+    }
+
+    const json& buffers_;
+    std::optional<std::span<const std::uint8_t>> binary_;
+    GltfFile& file_;
+    std::map<std::string_view, std::size_t> needed_;  // the largest byteLength of a uri
+    std::map<std::string_view, std::shared_ptr<const Bytes>> read_;
+};
 
 }  // namespace
 
 GltfFile read_gltf_file(const std::filesystem::path& path) {
-    GltfFile file{.name = path.string(), .document = {}, .buffers = {}, .hash = fnv1a_start};
+    GltfFile file{.name = path.string(), .document = {}, .buffers = {}, .bytes = 0, .hash = fnv1a_start};
     std::string why;
     const std::optional<Bytes> bytes = read_bytes(path, max_gltf_bytes + 1, why);
     if (!bytes) throw Error(ExitCode::no_input, fmt::format("{}: {}", file.name, why));
     check_size(bytes->size(), "the size of the file", file.name);
     file.hash = fnv1a(*bytes, file.hash);
+    file.bytes = bytes->size();
 
     const Container container = split(*bytes, file.name);
     file.document = parse_json(container.json, file.name);
@@ -164,20 +196,18 @@ GltfFile read_gltf_file(const std::filesystem::path& path) {
     check_gltf_schema(file.document, file.name);
 
     const json buffers = file.document.value("buffers", json::array());
+    BufferReader reader(buffers, container.binary, file);
     std::size_t total_size = 0;
     for (std::size_t i = 0; i < buffers.size(); ++i) {
         GltfBuffer& buffer = file.buffers.emplace_back();
         buffer.size = buffers[i]["byteLength"].get<std::size_t>();
         total_size += buffer.size;
         check_size(total_size, "the byteLength of the buffers together", file.name);
-        std::optional<Bytes> data = read_buffer(buffers[i], i, container.binary, file.name, file.hash, buffer.absent);
-        if (!data) continue;
-        if (buffer.size > data->size()) {
+        buffer.bytes = reader.read(i, buffer.absent);
+        if (buffer.bytes && buffer.size > buffer.bytes->size()) {
             bad_scene(file.name, fmt::format("buffers[{}].byteLength", i), fmt::to_string(buffer.size),
-                      fmt::format("its data has {} bytes", data->size()));
+                      fmt::format("its data has {} bytes", buffer.bytes->size()));
         }
-        data->resize(buffer.size);
-        buffer.bytes = std::move(*data);
     }
     return file;
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ constexpr std::size_t max_gltf_bytes = std::size_t(1) << 32;
 
 struct GltfBuffer {
     std::size_t size = 0;             // byteLength
-    std::vector<std::uint8_t> bytes;  // [size], or none where there is no such data
+    std::shared_ptr<const std::vector<std::uint8_t>> bytes;  // [size] or more; null where there is no such data
     std::string absent;               // why there is none: an error once something is read from it
 };
 
@@ -23,6 +24,7 @@ struct GltfFile {
     std::string name;                 // the path as given, for messages
     nlohmann::json document;          // passed check_gltf_schema
     std::vector<GltfBuffer> buffers;  // as in the document
+    std::size_t bytes = 0;            // of the file and of the external buffers that were read
     std::uint64_t hash = 0;           // FNV-1a of the file's bytes, then of each external buffer's
 };
 

@@ -52,13 +52,11 @@ std::optional<PunctualLight> read_light(const GltfFile& file, const tinygltf::Mo
         emitted(color, source.intensity, object + ".color", object + ".intensity", file.name, warnings);
     light.position = glm::dvec3(to_world[3]);
     if (light.kind != PunctualLight::Kind::point) {
-        const glm::dvec3 direction = -glm::dvec3(to_world[2]);
-        const double length = glm::length(direction);
-        if (!(length > 0.0)) {
+        light.direction = unit_or_zero(-glm::dvec3(to_world[2]));
+        if (light.direction == glm::dvec3(0.0)) {
             warnings.add("its light is skipped, the transform is singular", fmt::format("nodes[{}]", index));
             return std::nullopt;
         }
-        light.direction = direction / length;
     }
     if (light.kind == PunctualLight::Kind::spot) read_cone(source.spot, object, light, file.name, warnings);
     if (source.range != 0.0) warnings.add("ignored, light falls off without end", object + ".range");

@@ -74,7 +74,7 @@ private:
         for (std::size_t i = 0; i < triangles.size(); ++i) {
             for (const tinygltf::Primitive& source : model_.meshes[i].primitives) {
                 triangles[i] += triangle_count(source, accessors_);
-                check_total(triangles[i], max_triangles, fmt::format("triangles of meshes[{}]", i), file_.name);
+                check_total(triangles[i], max_triangles, fmt::format("triangles of meshes[{}]", i), file_);
             }
         }
         std::size_t all_triangles = 0, all_primitives = 0, all_instances = 0;
@@ -83,11 +83,11 @@ private:
             if (mesh < 0) continue;
             // No product overflows: both of its factors are within their limits.
             const std::size_t count = instance_count(file_, accessors_, node.index);
-            check_total(count, max_instances, fmt::format("instances of nodes[{}]", node.index), file_.name);
-            check_total(all_instances += count, max_instances, "instances", file_.name);
-            check_total(all_triangles += count * triangles[mesh], max_triangles, "triangles", file_.name);
+            check_total(count, max_instances, fmt::format("instances of nodes[{}]", node.index), file_);
+            check_total(all_instances += count, max_instances, "instances", file_);
+            check_total(all_triangles += count * triangles[mesh], max_triangles, "triangles", file_);
             check_total(all_primitives += count * model_.meshes[mesh].primitives.size(), max_primitives, "primitives",
-                        file_.name);
+                        file_);
         }
     }
 
@@ -156,7 +156,7 @@ private:
 
     std::uint32_t add_vertex(const Vertex& vertex) {
         const std::size_t i = scene_.positions.size();
-        check_total(i + 1, max_vertices, "vertices", file_.name);
+        check_total(i + 1, max_vertices, "vertices", file_);
         scene_.positions.push_back(vertex.position);
         scene_.normals.push_back(vertex.normal);
         for (std::size_t set = 0; set < 2; ++set) append(scene_.uv[set], i, vertex.uv[set], no_uv);
@@ -187,11 +187,9 @@ private:
 
     /// cross(p1 - p0, p2 - p0) as a unit vector; zero, and counted, where the area is zero.
     glm::vec3 geometric_normal(const std::array<glm::dvec3, 3>& p) {
-        const glm::dvec3 normal = glm::cross(p[1] - p[0], p[2] - p[0]);
-        const double length = glm::length(normal);
-        if (length > 0.0) return glm::vec3(normal / length);
-        ++degenerate_triangles_;
-        return glm::vec3(0.0f);
+        const glm::vec3 normal(unit_or_zero(glm::cross(p[1] - p[0], p[2] - p[0])));
+        if (normal == glm::vec3(0.0f)) ++degenerate_triangles_;
+        return normal;
     }
 
     /// The corners counter-clockwise in the world: a mirroring transform turns them over.

@@ -147,10 +147,11 @@ std::vector<PlacedNode> place_nodes(const GltfFile& file, const tinygltf::Model&
     std::vector<PlacedNode> stack;  // with the parent's transform; no recursion: the depth of the tree is free
     for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack.push_back({*root, glm::dmat4(1.0)});
     while (!stack.empty()) {
-        const auto [index, parent_to_world] = stack.back();
+        const PlacedNode top = stack.back();
         stack.pop_back();
+        const int index = top.index;
         const tinygltf::Node& node = model.nodes[index];
-        const glm::dmat4 to_world = parent_to_world * local_transform(file, model, index, warnings);
+        const glm::dmat4 to_world = top.to_world * local_transform(file, model, index, warnings);
         check_finite(to_world, [&] { return fmt::format("nodes[{}]", index); }, file.name);
         placed.push_back({index, to_world});
         for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {

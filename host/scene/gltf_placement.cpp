@@ -5,17 +5,9 @@
 
 #include <glm/geometric.hpp>
 
+#include "scene/gltf_values.h"
+
 namespace vkcppm {
-
-namespace {
-
-/// v / |v|, or zero where it has no direction.
-glm::vec3 unit_or_zero(const glm::dvec3& v) {
-    const double length = glm::length(v);
-    return length > 0.0 && std::isfinite(length) ? glm::vec3(v / length) : glm::vec3(0.0f);
-}
-
-}  // namespace
 
 std::optional<Placement> Placement::of(const glm::dmat4& to_world) {
     glm::dmat3 linear(to_world);
@@ -33,10 +25,10 @@ std::optional<Placement> Placement::of(const glm::dmat4& to_world) {
     return Placement{to_world, sign * cofactors, volume < 0.0};
 }
 
-glm::vec3 Placement::normal(const glm::dvec3& n) const { return unit_or_zero(normal_to_world * n); }
+glm::vec3 Placement::normal(const glm::dvec3& n) const { return glm::vec3(unit_or_zero(normal_to_world * n)); }
 
 glm::vec4 Placement::tangent(const glm::dvec4& t) const {
-    const glm::vec3 direction = unit_or_zero(glm::dmat3(to_world) * glm::dvec3(t));
+    const glm::vec3 direction(unit_or_zero(glm::dmat3(to_world) * glm::dvec3(t)));
     if (direction == glm::vec3(0.0f)) return glm::vec4(0.0f);
     return {direction, (t.w < 0.0) != mirrored ? -1.0f : 1.0f};
 }

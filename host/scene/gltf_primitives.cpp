@@ -132,7 +132,7 @@ SharedVectors<3> PrimitiveReader::morphed(const SharedVectors<3>& base, const ti
                                           const std::string& object) {
     if (!base || is_all_zero(weights)) return base;
     morphed_vectors_ += base->size() * weights.size();
-    check_total(morphed_vectors_, max_read_vectors, "vectors of morph targets", file_.name);
+    check_total(morphed_vectors_, max_read_vectors, "vectors of morph targets", file_);
     auto moved = std::make_shared<std::vector<glm::dvec3>>(*base);
     for (std::size_t k = 0; k < weights.size(); ++k) {
         const auto target = source.targets[k].find(name);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include "scene/bad_scene.h"
@@ -15,6 +16,17 @@
 namespace vkcppm {
 
 inline bool is_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/// v / |v|, or zero where v has no direction.
+inline glm::dvec3 unit_or_zero(const glm::dvec3& v) {
+    const double length = glm::length(v);
+    if (length > 1e-140 && length < 1e140) return v / length;
+    // The squares have left the range of normal doubles: once more, with 1 as the largest component.
+    const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    if (!(largest > 0.0) || !is_finite(v)) return glm::dvec3(0.0);
+    const glm::dvec3 scaled(v.x / largest, v.y / largest, v.z / largest);
+    return scaled / glm::length(scaled);
+}
 
 inline std::string to_text(const glm::dvec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
 

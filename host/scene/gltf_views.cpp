@@ -2,6 +2,7 @@
 
 #include "scene/accessor.h"
 #include "scene/bad_scene.h"
+#include "scene/gltf_limits.h"
 #include "scene/gltf_meshopt.h"
 
 namespace vkcppm {
@@ -42,10 +43,10 @@ GltfViews::View GltfViews::range(const json& source, const std::string& object) 
 
 std::span<const std::uint8_t> GltfViews::stored(const View& view) const {
     const GltfBuffer& buffer = file_.buffers[view.buffer];
-    if (buffer.bytes.empty()) {
+    if (!buffer.bytes) {
         bad_scene(file_.name, fmt::format("buffers[{}]", view.buffer), "absent", buffer.absent);
     }
-    return std::span(buffer.bytes).subspan(view.offset, view.size);
+    return std::span(*buffer.bytes).subspan(view.offset, view.size);
 }
 
 std::span<const std::uint8_t> GltfViews::bytes(std::size_t view) {
@@ -54,10 +55,7 @@ std::span<const std::uint8_t> GltfViews::bytes(std::size_t view) {
     const auto [decoded, is_new] = decoded_.try_emplace(view);
     if (is_new) {
         decoded_size_ += views_[view].size;
-        if (decoded_size_ > max_gltf_bytes) {
-            bad_scene(file_.name, "the byteLength of the compressed bufferViews together",
-                      fmt::to_string(decoded_size_), fmt::format("the limit is {} bytes", max_gltf_bytes));
-        }
+        check_total(decoded_size_, max_decoded_bytes, "bytes of the compressed bufferViews together", file_);
         decoded->second = decode_meshopt(file_.document["bufferViews"][view]["extensions"][meshopt],
                                          stored(source->second), views_[view].size, extension_name(view), file_.name);
     }

@@ -33,6 +33,22 @@ std::optional<Bytes> read_bytes(const std::filesystem::path& path, std::size_t l
     return bytes;
 }
 
+namespace {
+
+/// Refuses a file that is outside of `folder` once symbolic links are followed: an archive may bring some.
+void check_inside(const std::filesystem::path& path, const std::filesystem::path& folder, const std::string& uri,
+                  const std::string& object, const std::string& file) {
+    std::error_code error;
+    const std::filesystem::path target = std::filesystem::canonical(path, error);
+    if (error) return;  // there is no such file
+    const std::filesystem::path root = std::filesystem::canonical(folder.empty() ? "." : folder, error);
+    if (*target.lexically_relative(root).begin() != "..") return;
+    bad_scene(file, object, json_text(uri),
+              fmt::format("it must lie inside the scene's folder, it is a link to {}", target.string()));
+}
+
+}  // namespace
+
 std::optional<Bytes> read_uri(const std::string& uri, std::size_t limit, const std::string& object,
                               const std::string& file, std::uint64_t& hash, std::string& why) {
     if (is_data_uri(uri)) {
@@ -42,8 +58,10 @@ std::optional<Bytes> read_uri(const std::string& uri, std::size_t limit, const s
         }
         return bytes;
     }
-    const std::optional<std::filesystem::path> path = resolve_uri(std::filesystem::path(file).parent_path(), uri);
+    const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+    const std::optional<std::filesystem::path> path = resolve_uri(folder, uri);
     if (!path) bad_scene(file, object, json_text(uri), "it must be a relative path inside the scene's folder");
+    check_inside(*path, folder, uri, object, file);
     std::optional<Bytes> bytes = read_bytes(*path, limit, why);
     if (bytes) {
         hash = fnv1a(*bytes, hash);

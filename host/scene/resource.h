@@ -17,7 +17,7 @@ std::optional<Bytes> read_bytes(const std::filesystem::path& path, std::size_t l
 
 /// The bytes of a data URI, or the first `limit` of the file that a relative URI means below the folder of `file`,
 /// which go into `hash` as well; nothing, and why, where there is no such file. `object` has the URI, for messages.
-/// Throws Error(bad_scene) where a data URI is malformed or the file would lie outside of the folder.
+/// Throws Error(bad_scene) where a data URI is malformed or the file lies outside of the folder, be it by a link.
 std::optional<Bytes> read_uri(const std::string& uri, std::size_t limit, const std::string& object,
                               const std::string& file, std::uint64_t& hash, std::string& why);
 

@@ -54,6 +54,15 @@ void check_limits(const Buffer::Impl& buffer, const vk::PhysicalDeviceLimits& li
     if (buffer.bytes > limits.maxStorageBufferRange) refuse("bytes", buffer.bytes, limits.maxStorageBufferRange);
 }
 
+/// Some drivers, lavapipe for one, promise more memory than there is, and the system ends the program that believes them.
+void check_heap(const Buffer::Impl& buffer) {
+    const Device::Impl& device = buffer.device->impl();
+    if (buffer.bytes <= device.info.memory_bytes - std::min(device.info.memory_bytes, device.allocated)) return;
+    throw Error(ExitCode::out_of_device_memory,
+                fmt::format("buffer '{}' needs {} bytes beside {} in use, the memory of the device '{}' has {}", buffer.name,
+                            buffer.bytes, device.allocated, device.info.name, device.info.memory_bytes));
+}
+
 /// Device memory for `buffer`: device-local and mappable where there is such a type, else device-local.
 vk::raii::DeviceMemory allocate(Device::Impl& device, const vk::raii::Buffer& buffer, vk::MemoryPropertyFlags wanted,
                                 bool& mappable) {
@@ -93,6 +102,7 @@ Buffer::Buffer(Device& device, std::string name, std::uint64_t bytes, Kind kind)
     impl.bytes = (std::max<std::uint64_t>(bytes, 16) + 15) / 16 * 16;  // whole texels
     impl.kind = kind;
     check_limits(impl, gpu.limits);
+    check_heap(impl);
     guarded(fmt::format("allocating buffer '{}' of {} bytes ({} bytes are allocated)", impl.name, impl.bytes,
                         gpu.allocated),
             [&] {

@@ -272,6 +272,8 @@ TEST_F(Cli, EveryMisuseHasItsExitCodeAndItsLine) {
         {{"-o", "/dev/null"}, 73, {"/dev/null"}},
         {{"-o", "."}, 73, {"folder"}},
         {{"--png", "missing/out.png"}, 73, {"missing/out.png"}},
+        {{"--size", "65536x65536"}, 2, {"--size", "4294967296 pixels", "134217728"}},
+        {{"--size", "16384x8192", "--knn", "256"}, 71, {"buffer '", "needs", "bytes", "the device '", "allows"}},
         {{"--stats", "missing/out.json"}, 73, {"missing/out.json"}},
     };
     for (const Misuse& misuse : all) {
@@ -357,6 +359,11 @@ TEST_F(Cli, AFullDiskIsNoticedAndLeavesNothing) {
     expect_failure(result, 73, {"good.exr", "File too large"}, "full disk");
     EXPECT_EQ(test::read_bytes(folder_ / "good.exr"), "good");
     EXPECT_EQ(test::names_in(folder_.path()), std::set<std::string>{"good.exr"});
+    const auto reference = shell("ulimit -f 4; exec \"$0\" reference \"$1\" --size 64x48 --samples 128 --iterations 32 "
+                                 "--photons 500 --quiet -o good.exr");
+    expect_failure(reference, 73, {"good.exr", "File too large"}, "a reference on a full disk");
+    EXPECT_EQ(test::read_bytes(folder_ / "good.exr"), "good");
+    EXPECT_EQ(test::names_in(folder_.path()), std::set<std::string>{"good.exr"});
 }
 
 // ---- Streams that take nothing
@@ -375,7 +382,12 @@ TEST_F(Cli, ClosedStreamsDoNotHurtThePicture) {
     expect_done(shell("exec \"$0\"" + options + "-o plain.exr"));
     expect_done(shell("exec \"$0\"" + options + "-o closed.exr <&- >&- 2>&-"));
     expect_done(shell("exec \"$0\"" + options + "-o full.exr 2> /dev/full"));
-    // A pipe whose reader has gone: the exit code is kept in a file.
+    // Pipes whose readers have gone: the exit code is kept in a file.
+    for (const char* command : {"devices", "info \"$1\"", "--help"}) {
+        shell(std::string("(sleep 0.2; \"$0\" ") + command + " 2> error; echo $? > code) | true");
+        EXPECT_EQ(test::read_bytes(folder_ / "code"), "73\n") << command;
+        EXPECT_EQ(test::read_bytes(folder_ / "error"), "error: cannot write to standard output: Broken pipe\n");
+    }
     shell("(\"$0\"" + options + "-o pipe.exr 2>&1; echo $? > code) | true");
     EXPECT_EQ(test::read_bytes(folder_ / "code"), "0\n");
     const std::string plain = test::read_bytes(folder_ / "plain.exr");

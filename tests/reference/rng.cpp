@@ -3,8 +3,7 @@
 namespace vkcppm::reference {
 
 std::array<std::uint32_t, 4> pcg4d(std::array<std::uint32_t, 4> v) {
-    auto& [x, y, z, w] = v;
-    const auto mix = [&] {
+    const auto mix = [&x = v[0], &y = v[1], &z = v[2], &w = v[3]] {
         x += y * w;
         y += z * x;
         z += x * y;

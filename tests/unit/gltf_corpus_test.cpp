@@ -3,20 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <functional>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <glm/geometric.hpp>
-#include <glm/vector_relational.hpp>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "scene/gltf.h"
 #include "support/files.h"
 #include "support/scenes.h"
+#include "support/soundness.h"
 #include "support/thrown.h"
 
 namespace vkcppm {
@@ -30,64 +28,12 @@ const fs::path scenes = fs::path(VKCPPM_SOURCE_DIR) / "../shared/scenes";
 #define SKIP_WITHOUT(folder) \
     if (!fs::is_directory(folder)) GTEST_SKIP() << folder << " is not there"
 
-bool is_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
-bool is_unit(const glm::vec3& v) { return std::abs(glm::length(v) - 1.0f) < 1e-5f; }
-
-/// Whether a vector of vertices is empty or has one entry a vertex, all of which are sound.
-template <typename T, typename IsSound>
-void expect_sound_vertices(const Scene& scene, const std::vector<T>& values, const char* name,
-                           const IsSound& is_sound) {
-    EXPECT_TRUE(values.empty() || values.size() == scene.positions.size()) << name << ": " << values.size() << " for "
-                                                                           << scene.positions.size() << " vertices";
-    EXPECT_EQ(std::ranges::count_if(values, std::not_fn(is_sound)), 0) << name;
-}
-
-void expect_sound_texture(const Scene& scene, const std::optional<Texture>& texture) {
-    if (!texture) return;
-    ASSERT_LT(texture->image, scene.images.size());
-    ASSERT_LT(texture->uv_set, 2u);
-}
-
-/// Whether all that a scene holds is what Scene promises.
-void expect_sound(const Scene& scene) {
-    ASSERT_EQ(scene.positions.size(), scene.normals.size());
-    EXPECT_GE(scene.cameras.size(), 1u);
-    std::size_t unsound = 0;
-    for (const Triangle& triangle : scene.triangles) {
-        ASSERT_LT(triangle.material, scene.materials.size());
-        for (const std::uint32_t vertex : triangle.vertex) {
-            ASSERT_LT(vertex, scene.positions.size());
-            unsound += !is_finite(scene.positions[vertex]) || !is_unit(scene.normals[vertex]);
-        }
-    }
-    EXPECT_EQ(unsound, 0u) << "corners without a finite position or a unit normal";
-    for (const auto& uv : scene.uv) {
-        expect_sound_vertices(scene, uv, "uv", [](const glm::vec2& v) { return is_finite({v, 0.0f}); });
-    }
-    expect_sound_vertices(scene, scene.colors, "colors", [](const glm::vec4& c) {
-        return glm::all(glm::greaterThanEqual(c, glm::vec4(0))) && glm::all(glm::lessThanEqual(c, glm::vec4(1)));
-    });
-    expect_sound_vertices(scene, scene.tangents, "tangents", [](const glm::vec4& t) {
-        return t == glm::vec4(0) || (is_unit(glm::vec3(t)) && std::abs(t.w) == 1.0f);
-    });
-    for (const Material& m : scene.materials) {
-        for (const auto* texture :
-             {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.emissive_texture,
-              &m.transmission_texture, &m.specular_texture, &m.specular_color_texture, &m.clearcoat_texture,
-              &m.clearcoat_roughness_texture, &m.clearcoat_normal_texture}) {
-            expect_sound_texture(scene, *texture);
-        }
-    }
-    for (const TextureImage& image : scene.images) EXPECT_EQ(image.rgba.size(), 4 * image.size.pixels());
-}
-
 /// What loading a file says: its warnings, or the error that refuses it, without the file's name.
 std::vector<std::string> lines_of(const fs::path& file) {
     std::vector<std::string> lines;
     const auto error = test::thrown_by([&] {
         const Scene scene = load_gltf(file);
-        expect_sound(scene);
+        EXPECT_EQ(test::unsoundness(scene), "");
         lines = scene.warnings;
     });
     if (error) lines = {error->what()};
@@ -191,7 +137,7 @@ TEST(GltfCorpus, HostileFilesGiveASceneOrAnError) {
     const std::vector<fs::path> files = test::gltf_files_in(scenes / "hostile");
     for (const fs::path& file : files) {
         SCOPED_TRACE(file);
-        const auto error = test::thrown_by([&] { expect_sound(load_gltf(file)); });  // anything else ends the test
+        const auto error = test::thrown_by([&] { EXPECT_EQ(test::unsoundness(load_gltf(file)), ""); });  // anything else ends the test
         if (!error) continue;
         ++refused;
         EXPECT_EQ(error->code(), ExitCode::bad_scene) << error->what();

@@ -10,7 +10,9 @@
 #include <gtest/gtest.h>
 
 #include "scene/gltf.h"
+#include "scene/gltf_limits.h"
 #include "support/loading.h"
+#include "support/temporary_folder.h"
 #include "support/thrown.h"
 
 namespace vkcppm {
@@ -142,7 +144,7 @@ const std::vector<Fault> faults = {
     {"AccessorCountOverflow", [](auto& b) { b.document["accessors"][0]["count"] = 1537228672809129302u; },
      {"accessors[0].count is 1537228672809129302"}},
     {"AccessorHuge", [](auto& b) { b.document["accessors"][0]["count"] = 4503599627370496u; },
-     {"triangles of meshes[0] is 1501199875790165", "134217728"}},
+     {"triangles of meshes[0] is 1501199875790165; the limit is ", " bytes"}},
     {"AccessorNoCount", [](auto& b) { b.document["accessors"][0].erase("count"); }, {"accessors[0].count is missing"}},
     {"AccessorNegativeCount", [](auto& b) { b.document["accessors"][0]["count"] = -3; }, {"accessors[0].count is -3"}},
     {"AccessorComponent", [](auto& b) { b.document["accessors"][0]["componentType"] = 5124; },
@@ -154,9 +156,9 @@ const std::vector<Fault> faults = {
     {"ZerosHuge",
      [](auto& b) {
          b.document["accessors"][0].erase("bufferView");
-         b.document["accessors"][0]["count"] = 100000000;
+         b.document["accessors"][0]["count"] = 1000000;
      },
-     {"accessors[0].count is 100000000", "4194304"}},
+     {"number of vectors that the meshes read is 1000000; the limit is ", " bytes"}},
     {"SparseIndex", [](auto& b) { add_sparse(b, {0, 3}); }, {"accessors[0].sparse.indices element 1", "below 3"}},
     {"SparseOrder", [](auto& b) { add_sparse(b, {1, 1}); }, {"accessors[0].sparse.indices element 1", "rise"}},
     {"SparseCount", [](auto& b) { add_sparse(b, {0}, {{"count", 2}}); },
@@ -196,10 +198,10 @@ const std::vector<Fault> faults = {
     {"TooManyTriangles",
      [](auto& b) {
          b.document["accessors"][0].erase("bufferView");
-         b.document["accessors"][0]["count"] = 3000000;
+         b.document["accessors"][0]["count"] = 600000;
          b.document["nodes"] = std::vector<json>(150, {{"mesh", 0}});
      },
-     {"number of triangles is 135000000", "134217728"}},
+     {"number of triangles is 800000; the limit is ", " bytes"}},
 
     // Cameras, lights, materials.
     {"Yfov", [](auto& b) { add_camera(b, {{"yfov", 4}, {"znear", 1}}); }, {"cameras[0].perspective.yfov is 4", "pi"}},
@@ -319,6 +321,104 @@ TEST(HostileFile, Buffers) {
     json document = json::parse(builder.gltf());
     document["buffers"][0]["byteLength"] = 5000000000000u;
     expect_bad_scene(document.dump(), {"byteLength of the buffers together is 5000000000000", "4294967296"});
+}
+
+TEST(HostileFile, WhatItStandsForIsInProportionToItsBytes) {
+    EXPECT_EQ(max_triangles.of(0), 262144u);
+    EXPECT_EQ(max_triangles.of(1000), 262144u + 256000u);
+    EXPECT_EQ(max_triangles.of(std::size_t(1) << 32), 134217728u);
+}
+
+TEST(HostileFile, LinksOutOfItsFolder) {
+    const test::TemporaryFolder outside, folder;
+    GltfBuilder builder = test::one_triangle();
+    test::write_bytes(outside / "secret.bin", builder.bytes());
+    std::filesystem::create_symlink(outside / "secret.bin", folder / "link.bin");
+    std::filesystem::create_symlink(outside.path(), folder / "textures");
+    std::filesystem::create_directory(folder / "inside");
+    test::write_bytes(folder / "inside/real.bin", builder.bytes());
+    std::filesystem::create_symlink("inside/real.bin", folder / "near.bin");
+    const auto load = [&](const char* uri) {
+        test::write_bytes(folder / "scene.gltf", builder.gltf_with_uri(uri));
+        return test::thrown_by([&] { load_gltf(folder / "scene.gltf"); });
+    };
+    for (const char* uri : {"link.bin", "textures/secret.bin", "%74extures/secret.bin"}) {
+        const auto error = load(uri);
+        ASSERT_TRUE(error) << uri << " was read";
+        const std::string message = error->what();
+        EXPECT_EQ(error->code(), ExitCode::bad_scene) << message;
+        for (const std::string& part : {std::string("buffers[0].uri is \"") + uri, (outside / "secret.bin").string()}) {
+            EXPECT_NE(message.find(part), std::string::npos) << part << " not in: " << message;
+        }
+    }
+    for (const char* uri : {"near.bin", "inside/real.bin", "inside/../near.bin"}) {
+        const auto error = load(uri);
+        EXPECT_FALSE(error) << uri << ": " << error->what();
+    }
+}
+
+// A file that many buffers name is read once: eight of these fit into the memory that is there, a million would not.
+TEST(HostileFile, ManyBuffersOfOneFileShareItsBytes) {
+    const test::TemporaryFolder folder;
+    GltfBuilder builder = test::one_triangle();
+    test::write_bytes(folder / "a.bin", builder.bytes() + std::string(64, '\0'));
+    json document = json::parse(builder.gltf_with_uri("a.bin"));
+    for (int i = 1; i <= 8; ++i) document["buffers"].push_back({{"uri", "a.bin"}, {"byteLength", 36 + 8 * i}});
+    document["bufferViews"][0]["buffer"] = 8;
+    test::write_bytes(folder / "scene.gltf", document.dump());
+    const GltfFile file = read_gltf_file(folder / "scene.gltf");
+    EXPECT_EQ(file.bytes, document.dump().size() + 100) << "of the scene and of the largest of the buffers";
+    for (const GltfBuffer& buffer : file.buffers) EXPECT_EQ(buffer.bytes, file.buffers[0].bytes);
+    EXPECT_EQ(load_gltf(folder / "scene.gltf").triangles.size(), 1u);
+    document["buffers"].push_back({{"uri", "a.bin"}, {"byteLength", 101}});
+    test::write_bytes(folder / "scene.gltf", document.dump());
+    const auto error = test::thrown_by([&] { load_gltf(folder / "scene.gltf"); });
+    ASSERT_TRUE(error);
+    EXPECT_NE(std::string(error->what()).find("buffers[9].byteLength is 101; its data has 100"), std::string::npos)
+        << error->what();
+}
+
+/// The scene of one triangle with a base colour texture of those bytes.
+std::string textured(const std::string& picture) {
+    GltfBuilder builder = test::one_triangle();
+    primitive(builder)["material"] = builder.add(
+        "materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", builder.texture(picture)}}}}}});
+    return builder.gltf();
+}
+
+/// Signature and header of a PNG of that size, 8-bit grey, and nothing behind them.
+std::string png_header(std::uint32_t width, std::uint32_t height) {
+    std::string bytes("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16);
+    for (const std::uint32_t side : {width, height}) {
+        for (int shift = 24; shift >= 0; shift -= 8) bytes += char(side >> shift);
+    }
+    bytes += std::string("\x08\0\0\0\0", 5);
+    std::uint32_t crc = ~0u;  // PNG specification, annex D, of the chunk's name and data
+    for (const char c : bytes.substr(12)) {
+        crc ^= std::uint8_t(c);
+        for (int bit = 0; bit < 8; ++bit) crc = crc & 1 ? crc >> 1 ^ 0xedb88320u : crc >> 1;
+    }
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += char(~crc >> shift);
+    return bytes + std::string("\0\0\0\0IDAT\x35\xaf\x06\x1e", 12);
+}
+
+// "Start of image", then a frame header: precision, height, width, one component.
+std::string jpeg_header(std::uint16_t width, std::uint16_t height) {
+    const auto word = [](std::uint16_t value) { return std::string{char(value >> 8), char(value & 0xff)}; };
+    return "\xff\xd8\xff\xc0" + word(11) + "\x08" + word(height) + word(width) + std::string("\1\1\x11\0", 4) +
+           "\xff\xda" + word(8) + std::string("\1\1\0\0\x3f\0", 6);
+}
+
+TEST(HostileFile, PicturesThatClaimMoreThanTheyHold) {
+    expect_bad_scene(textured(png_header(16385, 1)), {"size of images[0] is 16385 x 1; the limit is 16384 texels a side"});
+    expect_bad_scene(textured(png_header(16384, 16384)),
+                     {"size of images[0] is 16384 x 16384; its 45 bytes hold 371520 texels at most"});
+    expect_bad_scene(textured(png_header(65536, 32768)), {"size of images[0] is 65536 x 32768", "16384"});
+    expect_bad_scene(textured(png_header(0x7fffffff, 1)), {"images[0] is unreadable; broken PNG"});
+    expect_bad_scene(textured(jpeg_header(16384, 16384)), {"size of images[0] is 16384 x 16384", "texels at most"});
+    expect_bad_scene(textured(jpeg_header(65500, 65500)), {"size of images[0] is 65500 x 65500", "16384"});
+    expect_bad_scene(textured(jpeg_header(0, 16)), {"images[0] is unreadable; broken JPEG"});
+    expect_bad_scene(textured(std::string("\xff\xd8\xff\0\0\0\0\0\0\0", 10)), {"images[0] is unreadable; broken JPEG"});
 }
 
 }  // namespace

@@ -426,15 +426,15 @@ TEST(HostileInstances, AreLimitedBeforeAnyIsRead) {
         return builder.add("accessors", {{"componentType", 5126}, {"type", "VEC3"}, {"count", count}});
     };
     instance_attributes(builder) = {{"TRANSLATION", zeros(std::uint64_t(1) << 50)}};
-    expect_bad_scene(builder.gltf(), {"number of instances of nodes[0] is 1125899906842624", "16777216"});
+    expect_bad_scene(builder.gltf(), {"number of instances of nodes[0] is 1125899906842624; the limit is ", " bytes"});
     builder.document["nodes"].push_back(builder.document["nodes"][0]);
-    instance_attributes(builder) = {{"TRANSLATION", zeros(1 << 24)}};
+    instance_attributes(builder) = {{"TRANSLATION", zeros(1 << 18)}};
     builder.document["nodes"][1] = builder.document["nodes"][0];
-    expect_bad_scene(builder.gltf(), {"number of instances is 33554432", "16777216"});
+    expect_bad_scene(builder.gltf(), {"number of instances is 524288; the limit is ", " bytes"});
     builder.document["nodes"].erase(1);
     primitive(builder)["indices"] =
         builder.add("accessors", {{"componentType", 5123}, {"type", "SCALAR"}, {"count", 3000}});
-    expect_bad_scene(builder.gltf(), {"number of triangles is 16777216000", "134217728"});
+    expect_bad_scene(builder.gltf(), {"number of triangles is 262144000; the limit is ", " bytes"});
 }
 
 TEST(HostileAttribute, IsRefusedByALineThatNamesIt) {

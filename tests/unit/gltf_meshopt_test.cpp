@@ -259,12 +259,14 @@ TEST(HostileMeshopt, EveryTruncationIsRefused) {
 
 TEST(HostileMeshopt, ACountThatTheDataCannotHoldIsRefusedBeforeMemoryIsAllocated) {
     GltfBuilder builder = test::one_triangle();
-    const std::size_t count = std::size_t(1) << 27;
+    const std::size_t count = std::size_t(1) << 14;
     const int view = add_compressed_view(builder, Bytes(100), count, 16, "ATTRIBUTES");
     builder.document["accessors"][0]["bufferView"] = view;
     json document = json::parse(with_fallback(builder));
     document["buffers"][1]["byteLength"] = count * 16;
-    expect_bad_scene(document.dump(), {"byteLength is 100", "too few for 2147483648 bytes"});
+    expect_bad_scene(document.dump(), {"byteLength is 100", "too few for 262144 bytes"});
+    document["bufferViews"][view]["byteLength"] = document["buffers"][1]["byteLength"] = std::size_t(1) << 31;
+    expect_bad_scene(document.dump(), {"bytes of the compressed bufferViews together is 2147483648; the limit is "});
 }
 
 }  // namespace

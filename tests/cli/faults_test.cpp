@@ -1,0 +1,71 @@
+// The program on a device that fails: exit code, one line, the last good picture kept.
+
+#include <ostream>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "cli/program.h"
+#include "support/files.h"
+
+namespace vkcppm {
+namespace {
+
+using namespace test;
+
+/// What tests/cli/fault_layer does to the device, and what is to come of it.
+struct Fault {
+    const char* name;
+    const char* text;  // VKCPPM_FAULT
+    int code;
+    Words told;
+};
+
+void PrintTo(const Fault& fault, std::ostream* stream) { *stream << fault.text; }
+
+class FaultLayer : public ProgramTest {
+protected:
+    ProcessResult run_on(const char* fault, Words more) const {
+        Words words{"/usr/bin/env", "VK_LAYER_PATH=" VKCPPM_FAULT_LAYER, "VK_INSTANCE_LAYERS=VK_LAYER_VKCPPM_fault",
+                    std::string("VKCPPM_FAULT=") + fault, VKCPPM_PROGRAM};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_process(words, folder_.path());
+    }
+};
+
+class Faults : public FaultLayer, public testing::WithParamInterface<Fault> {};
+
+TEST_P(Faults, EndInALineAndKeepTheGoodPicture) {
+    write_bytes(folder_ / "good.exr", "good");
+    const auto result = run_on(GetParam().text, {scene("slab"), "--size", "16x12", "--iterations", "64", "--photons", "500",
+                                                 "--quiet", "-o", "good.exr", "--png", "new.png"});
+    expect_failure(result, GetParam().code, GetParam().told, GetParam().text);
+    EXPECT_TRUE(read_bytes(folder_ / "good.exr") == "good") << "the good picture is lost";
+    EXPECT_EQ(names_in(folder_.path()), std::set<std::string>{"good.exr"});
+}
+
+const std::vector<Fault> faults = {
+    {"LostAtTheFirstSubmission", "vkQueueSubmit 1 -4", 75, {"the device was lost while running kernels"}},
+    {"LostInTheRender", "vkQueueSubmit 4 -4", 75, {"the device was lost while running kernels"}},
+    {"LostWhileItIsWaitedFor", "vkWaitForFences 3 -4", 75, {"the device was lost while running kernels"}},
+    {"MemoryForTheFirstBuffer", "vkAllocateMemory 1 -2", 71,
+     {"out of device memory while allocating buffer '", "bytes are allocated"}},
+    {"MemoryForALaterBuffer", "vkAllocateMemory 20 -2", 71, {"out of device memory while allocating buffer '"}},
+    {"HostMemoryOfTheDriver", "vkAllocateMemory 20 -1", 71, {"out of host memory while allocating buffer '"}},
+    {"MemoryForAKernel", "vkCreateComputePipelines 3 -2", 71, {"out of device memory while creating kernel '"}},
+    {"AnErrorWithoutAName", "vkCreateComputePipelines 1 -13", 70, {"Vulkan failed while creating kernel '"}},
+    {"ASmallDevice", "heap 0 200000", 71,
+     {"buffer '", " bytes beside ", " in use, the memory of the device '", "has 200000"}},
+};
+
+INSTANTIATE_TEST_SUITE_P(, Faults, testing::ValuesIn(faults), [](const auto& info) { return std::string(info.param.name); });
+
+// A program that fails with the layer would pass the tests above whatever it did.
+TEST_F(FaultLayer, TheLayerItselfIsNoFault) {
+    expect_done(run_on("", {scene("slab"), "--size", "16x12", "--iterations", "2", "--photons", "500", "--quiet", "-o",
+                            "a.exr"}));
+    EXPECT_EQ(names_in(folder_.path()), std::set<std::string>{"a.exr"});
+}
+
+}  // namespace
+}  // namespace vkcppm

@@ -1,0 +1,80 @@
+// The readers of scenes and pictures over thousands of files that are nearly right, the same ones every day. The fuzzer
+// (README.md) looks for new ones; what it finds stays in regressions/.
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "support/everything.h"
+#include "support/files.h"
+#include "support/hostile_input.h"
+#include "support/mutation.h"
+#include "support/scenes.h"
+#include "support/temporary_folder.h"
+
+namespace vkcppm {
+namespace {
+
+namespace fs = std::filesystem;
+using test::misbehaviour;
+
+const fs::path source = VKCPPM_SOURCE_DIR;
+
+std::vector<fs::path> files_of(const fs::path& folder) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
+    std::ranges::sort(files);
+    return files;
+}
+
+/// Puts `count` mutations of each file through the readers. Where one misbehaves, the seed says which it was.
+void expect_no_misbehaviour(const std::vector<fs::path>& files, std::uint32_t count) {
+    ASSERT_FALSE(files.empty());
+    for (const fs::path& file : files) {
+        const std::string bytes = test::read_bytes(file);
+        ASSERT_EQ(misbehaviour(bytes), "") << file;
+        for (std::uint32_t seed = 0; seed < count; ++seed) {
+            ASSERT_EQ(misbehaviour(test::mutation(bytes, seed)), "") << "mutation " << seed << " of " << file;
+        }
+    }
+}
+
+TEST(Hostile, WhatTheFuzzerFoundBehaves) {
+    for (const fs::path& file : files_of(source / "tests/fuzz/regressions")) {
+        SCOPED_TRACE(file);
+        EXPECT_EQ(misbehaviour(test::read_bytes(file)), "");
+    }
+}
+
+TEST(Hostile, MutationsOfScenes) {
+    std::vector<fs::path> files = test::gltf_files_in(source / "scenes");
+    std::erase_if(files, [](const fs::path& file) { return fs::file_size(file) > 12000; });
+    expect_no_misbehaviour(files, 100);
+}
+
+TEST(Hostile, MutationsOfASceneWithEverything) {
+    const test::TemporaryFolder folder;
+    test::write_bytes(folder / "everything.glb", test::everything().glb());
+    const Scene scene = load_gltf(folder / "everything.glb");
+    EXPECT_EQ(scene.triangles.size(), 10u);
+    EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.front();
+    expect_no_misbehaviour({folder / "everything.glb"}, 1500);
+}
+
+TEST(Hostile, MutationsOfPictures) {
+    expect_no_misbehaviour(files_of(source / "tests/fuzz/pictures"), 100);
+}
+
+TEST(Hostile, MutationsOfHostileFiles) {
+    const auto folder = test::shared_file("hostile");
+    if (!folder) GTEST_SKIP() << "the hostile files are not there";
+    std::vector<fs::path> files = test::gltf_files_in(*folder);
+    std::erase_if(files, [](const fs::path& file) { return fs::file_size(file) > 12000; });
+    expect_no_misbehaviour(files, 6);
+}
+
+}  // namespace
+}  // namespace vkcppm
