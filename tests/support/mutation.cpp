@@ -99,7 +99,8 @@ void change_value(json& document, Dice& dice) {
             } else if (chosen.is_number()) {
                 chosen = chosen.get<double>() * (dice.one_in(2) ? 1e10 : -1e-10);
             } else if (chosen.is_string()) {
-                chosen = chosen.get<std::string>().substr(dice.below(4));
+                const std::string text = chosen;
+                chosen = text.substr(std::min(text.size(), dice.below(4)));
             }
             break;
         case 4:
