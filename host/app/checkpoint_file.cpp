@@ -29,7 +29,6 @@ constexpr std::uint64_t fixed_bytes = magic.size() + 3 * sizeof(std::uint64_t);
 constexpr std::uint64_t most_header_bytes = 256u << 20;       // a million points of a curve
 constexpr std::uint64_t most_state_bytes_per_pixel = 1024;    // no estimator keeps so much
 constexpr std::uint64_t most_other_state_bytes = 4096;        // grid and histogram, padding of buffers
-constexpr std::uint64_t most_iterations = 0x7fffffff;         // as resolve_settings allows
 constexpr std::size_t chunk_bytes = 1u << 20;                 // read at once for the checksum
 
 static_assert(std::endian::native == std::endian::little, "files are little-endian");
@@ -136,8 +135,8 @@ Checkpoint read_header(Reader& header) {
     report.device = header.text();
     report.driver = header.text();
     report.iterations = header.value<std::uint64_t>();
-    if (report.iterations < 1 || report.iterations > most_iterations) {
-        header.fail(fmt::format("{} iterations, outside 1..{}", report.iterations, most_iterations));
+    if (report.iterations < 1 || report.iterations > max_iterations) {
+        header.fail(fmt::format("{} iterations, outside 1..{}", report.iterations, max_iterations));
     }
     report.emitted_paths = header.value<std::uint64_t>();
     report.stored_photons = header.value<std::uint64_t>();

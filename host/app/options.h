@@ -101,8 +101,8 @@ struct TextOptions {
 using Options = std::variant<RenderOptions, RaceOptions, ReferenceOptions, CompareOptions, InfoOptions, DevicesOptions,
                              TextOptions>;
 
-/// Iterations where --time is given and --iterations is not: the largest number that Settings takes.
-inline constexpr std::uint32_t unbounded_iterations = 0x7fffffff;
+/// Iterations where --time is given and --iterations is not.
+inline constexpr std::uint32_t unbounded_iterations = max_iterations;
 inline constexpr std::uint32_t unbounded_samples = 1u << 24;  // of ReferenceSettings, likewise
 
 /// Reads the command line; argv[0] is the program. The first word chooses the command where it is race, reference,

@@ -80,7 +80,7 @@ std::uint32_t tally_rows(const EstimatorRow& row, std::uint32_t rings, std::uint
 std::uint32_t moment_rows(const EstimatorRow& row, std::uint32_t rings, std::uint32_t sectors) {
     switch (row.statistic) {
         case Statistic::derivative: return APPM_MOMENTS;
-        case Statistic::contribution: return 2 * cells(row, rings, sectors) + rings;
+        case Statistic::contribution: return 3 * cells(row, rings, sectors) + 2 * rings;
         default: return 0;
     }
 }

@@ -9,6 +9,7 @@
 #include <glm/packing.hpp>
 
 #include "core/error.h"
+#include "render/coincidence.h"
 #include "render/features.h"
 #include "render/lights.h"
 #include "render/surface.h"
@@ -47,28 +48,68 @@ SceneFrame make_frame(const Scene& scene) {
     return frame;
 }
 
-void add_triangles(const Scene& scene, FlatScene& flat) {
-    std::vector<std::array<glm::vec3, 3>> corners(scene.triangles.size());
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        for (int c = 0; c < 3; ++c) {
-            corners[i][c] = glm::vec3(flat.frame.point(scene.positions[scene.triangles[i].vertex[c]]));
-        }
+/// The triangles of the scene that kernels see, and their corners there.
+struct Placed {
+    std::vector<std::uint32_t> source;  // into the triangles of the scene
+    std::vector<Triangle> triangles;    // those, their corners in the order of `corners`
+    std::vector<Corners> corners;
+};
+
+/// Which corner should come first. Barycentrics are well conditioned where the edges at the first corner are not nearly
+/// parallel; in a needle, with two long edges and a short one, that is a corner of the short one.
+int first_corner(const Corners& c) {
+    constexpr float nearly_parallel = 0.02f;
+    const glm::vec3 e1 = c[1] - c[0], e2 = c[2] - c[0];
+    if (glm::length(glm::cross(e1, e2)) >= nearly_parallel * glm::length(e1) * glm::length(e2)) return 0;
+    const std::array<float, 3> opposite = {glm::distance(c[1], c[2]), glm::distance(c[2], c[0]),
+                                           glm::distance(c[0], c[1])};
+    return int(std::max_element(opposite.begin(), opposite.end()) - opposite.begin());
+}
+
+Placed place_triangles(const Scene& scene, const SceneFrame& frame, const std::vector<SurfaceTraits>& traits) {
+    std::vector<Corners> all(scene.triangles.size());
+    std::vector<Face> faces;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const Triangle& triangle = scene.triangles[i];
+        for (int c = 0; c < 3; ++c) all[i][c] = glm::vec3(frame.point(scene.positions[triangle.vertex[c]]));
+        const SurfaceTraits& t = traits[triangle.material];
+        faces.push_back({triangle.material, t.emits, t.glass && !t.thin});
     }
+    Placed placed;
+    placed.source = distinct_triangles(all, faces);
+    std::vector<Face> kept;
+    for (const std::uint32_t i : placed.source) {
+        placed.corners.push_back(all[i]);
+        kept.push_back(faces[i]);
+    }
+    part_touching_faces(placed.corners, kept);
+    for (std::size_t i = 0; i < placed.source.size(); ++i) {
+        Triangle triangle = scene.triangles[placed.source[i]];
+        const int first = first_corner(placed.corners[i]);
+        std::rotate(triangle.vertex.begin(), triangle.vertex.begin() + first, triangle.vertex.end());
+        std::rotate(placed.corners[i].begin(), placed.corners[i].begin() + first, placed.corners[i].end());
+        placed.triangles.push_back(triangle);
+    }
+    return placed;
+}
+
+void add_triangles(const Scene& scene, const std::vector<SurfaceTraits>& traits, FlatScene& flat) {
+    const auto& [sources, triangles, corners] = place_triangles(scene, flat.frame, traits);
     flat.bvh = build_bvh(corners);
     flat.low = glm::vec3(corners.empty() ? 0.0f : std::numeric_limits<float>::infinity());
     flat.high = -flat.low;
-    for (const std::uint32_t source : flat.bvh.order) {
-        const Triangle& triangle = scene.triangles[source];
-        const auto& [p0, p1, p2] = corners[source];
+    for (std::uint32_t& source : flat.bvh.order) {
+        const Corners& placed = corners[source];
+        const Triangle& triangle = flat.sources.emplace_back(triangles[source]);
+        source = sources[source];
         gpu::TriangleGeometry geometry{};
-        geometry.v0 = p0;
-        geometry.e1 = p1 - p0;
-        geometry.e2 = p2 - p0;
-        const glm::vec3 extent = glm::abs(geometry.v0) + glm::abs(geometry.e1) + glm::abs(geometry.e2);
-        // Rounding of v0 + u e1 + v e2 and of the corners themselves: 8 half-ulps of the largest term.
-        geometry.error = 4.8e-7f * std::max({extent.x, extent.y, extent.z});
-        // Rounding of s . (d x e2) and d . (s x e1) for |s| = |d| = 1: 12 half-ulps of the longer edge.
-        geometry.slack = 7.2e-7f * std::max(glm::length(geometry.e1), glm::length(geometry.e2));
+        geometry.v0 = placed[0];
+        geometry.e1 = placed[1] - placed[0];
+        geometry.e2 = placed[2] - placed[0];
+        geometry.error = position_error(placed);
+        // Rounding of s . (d x e2) and d . (s x e1) for |s| = |d| = 1: 12 half-ulps of the edge.
+        geometry.slack_u = 7.2e-7f * glm::length(geometry.e2);
+        geometry.slack_v = 7.2e-7f * glm::length(geometry.e1);
         flat.triangles.push_back(geometry);
 
         const glm::dvec3 normal = glm::cross(glm::dvec3(geometry.e1), glm::dvec3(geometry.e2));
@@ -84,7 +125,7 @@ void add_triangles(const Scene& scene, FlatScene& flat) {
         shading.material = triangle.material | (is_flat ? SHADING_FLAT : 0u);
         flat.shading.push_back(shading);
 
-        for (const glm::vec3& p : corners[source]) {
+        for (const glm::vec3& p : placed) {
             flat.low = glm::min(flat.low, p);
             flat.high = glm::max(flat.high, p);
             flat.radius = std::max(flat.radius, double(glm::length(p)));
@@ -107,8 +148,8 @@ glm::vec4 texcoords_of(const Scene& scene, std::uint32_t vertex) {
 /// What the features of the scene read of the vertices, triangle by triangle.
 void add_attributes(const Scene& scene, FlatScene& flat) {
     const std::uint32_t features = bits_of(flat.features);
-    for (const std::uint32_t source : flat.bvh.order) {
-        const auto& vertex = scene.triangles[source].vertex;
+    for (const Triangle& triangle : flat.sources) {
+        const auto& vertex = triangle.vertex;
         if (features & FEATURE_TEXTURES) {
             for (const std::uint32_t v : vertex) flat.texcoords.push_back(texcoords_of(scene, v));
         }
@@ -151,7 +192,7 @@ FlatScene flatten(const Scene& scene) {
     }
     flat.textures = textures.lookups();
     flat.texels = textures.texels();
-    add_triangles(scene, flat);
+    add_triangles(scene, traits, flat);
     add_lights(scene, flat);
     flat.features = features_of(scene, traits, flat);
     add_attributes(scene, flat);

@@ -19,6 +19,7 @@ struct FlatScene {
     SceneFrame frame;
     Bvh bvh;
     std::vector<gpu::TriangleGeometry> triangles;  // in leaf order, as all that is listed by triangle
+    std::vector<Triangle> sources;                 // of the scene, corners in the order in which kernels see them
     std::vector<gpu::TriangleShading> shading;
     std::vector<glm::vec4> texcoords;              // [3 x triangles] both sets of a corner, where there are textures
     std::vector<glm::uvec4> vertex_colors;         // [2 x triangles] half floats, where there are any

@@ -58,6 +58,7 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     set_test(params_, estimator, settings);
     params_.photons = scene.lights.empty() ? 0 : settings.photons;
     params_.inverse_paths = params_.photons > 0 ? 1.0f / float(params_.photons) : 0.0f;
+    params_.flux_unit = scene.light_power > 0.0 ? float(std::exp2(-std::floor(std::log2(scene.light_power)))) : 1.0f;
     const std::uint32_t per_lane = std::clamp(params_.photons / device.busy_lanes(), 1u, most_photons_per_lane);
     params_.photons_per_lane = per_lane;
     // Whole work groups: a SIMD group takes the share of all its lanes.
@@ -257,7 +258,7 @@ bool Integrator::unblock(Pass to) {
     bool was_blocked = false;
     while (true) {
         gpu::Status status = buffer(BIND_STATUS).download_value<gpu::Status>();
-        rays_ += status.rays + pixels_ * (status.completed - completed_);
+        rays_ += (std::uint64_t(status.rays_high) << 32) + status.rays + pixels_ * (status.completed - completed_);
         stored_ += status.stored;
         invalid_ += status.invalid;
         completed_ = status.completed;
@@ -266,7 +267,7 @@ bool Integrator::unblock(Pass to) {
             throw Error(ExitCode::internal, fmt::format("{} rays need more than {} steps of the BVH each, the limit of device '{}'",
                                                         status.stuck, params_.step_budget, device_.info().name));
         }
-        status.rays = status.stored = status.invalid = status.blocked = 0;
+        status.rays = status.rays_high = status.stored = status.invalid = status.blocked = 0;
         buffer(BIND_STATUS).upload_value(status);
         if (blocked == 0) return was_blocked;
         was_blocked = true;
@@ -320,11 +321,13 @@ std::map<std::string, std::vector<float>> Integrator::aovs() const {
     add("ppm.rejections", [](State s, Sums) { return s.rejections; });
     add("ppm.statistic", [](State s, Sums) { return s.statistic; });
     add("ppm.iterations", [](State s, Sums) { return s.seen; });
-    const auto mean = [](float sum, Sums a) { return a.hits > 0 ? sum / float(a.hits) : 0.0f; };
-    add("Z", [&](State, Sums a) { return mean(a.depth, a) / scale_; });
+    const auto mean = [](float sum, float low, Sums a) {
+        return a.hits > 0 ? (double(sum) + double(low)) / double(a.hits) : 0.0;
+    };
+    add("Z", [&](State, Sums a) { return mean(a.depth, a.depth_low, a) / scale_; });
     for (int c = 0; c < 3; ++c) {
-        add(std::string("Albedo.") + "RGB"[c], [&](State, Sums a) { return mean(a.albedo[c], a); });
-        add(std::string("N.") + "XYZ"[c], [&](State, Sums a) { return mean(a.normal[c], a); });
+        add(std::string("Albedo.") + "RGB"[c], [&](State, Sums a) { return mean(a.albedo[c], a.albedo_low[c], a); });
+        add(std::string("N.") + "XYZ"[c], [&](State, Sums a) { return mean(a.normal[c], a.normal_low[c], a); });
     }
     return channels;
 }

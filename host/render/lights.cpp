@@ -26,6 +26,11 @@ double mean(const glm::dvec3& v) {
     return (v.x + v.y + v.z) / 3.0;
 }
 
+/// 1 - cos of an angle.
+double versine(double angle) {
+    return 2.0 * std::sin(0.5 * angle) * std::sin(0.5 * angle);
+}
+
 /// Alias table (Walker 1974, Vose 1991): entry i is kept with probability keep[i], else alias[i] stands for it; then
 /// each is drawn in proportion to its weight.
 struct AliasTable {
@@ -239,7 +244,7 @@ void add_emitters(const Scene& scene, const FlatScene& flat, std::vector<Weighed
         const double area = 0.5 * glm::length(glm::cross(glm::dvec3(triangle.e1), glm::dvec3(triangle.e2)));
         light.power = glm::vec3(glm::dvec3(surface.emission) * (pi * area * (light.double_sided ? 2.0 : 1.0)));
         if (surface.texture[TEXTURE_EMISSIVE] != 0 || (surface.flags & (SURFACE_MASK | SURFACE_BLEND)) != 0) {
-            const Triangle& source = scene.triangles[flat.bvh.order[i]];
+            const Triangle& source = flat.sources[i];
             TexturedEmitter(scene, source, lights, means[source.material]).add(light);
         } else {
             lights.push_back({light, mean(glm::dvec3(light.power))});
@@ -262,10 +267,10 @@ void add_punctual_lights(const Scene& scene, const FlatScene& flat, std::vector<
                 break;
             case PunctualLight::Kind::spot: {
                 light.kind = LIGHT_SPOT;
-                const double inner = std::cos(source.inner_cone), outer = std::cos(source.outer_cone);
+                const double inner = versine(source.inner_cone), outer = versine(source.outer_cone);
                 light.e2 = glm::vec3(inner, outer, 0.0);
-                // Integral of clamp((c - outer) / (inner - outer), 0, 1)^2 over the sphere.
-                light.power = glm::vec3(intensity * (2.0 * pi * scale2 * ((1.0 - inner) + (inner - outer) / 3.0)));
+                // Integral of clamp((outer - v) / (outer - inner), 0, 1)^2 over the sphere.
+                light.power = glm::vec3(intensity * (2.0 * pi * scale2 * (inner + (outer - inner) / 3.0)));
                 break;
             }
             case PunctualLight::Kind::directional: {

@@ -1,10 +1,12 @@
 #include "render/scene_buffers.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "core/error.h"
 #include "render/features.h"
@@ -13,13 +15,22 @@
 namespace vkcppm {
 namespace {
 
+/// Depth in front of which there is nothing, for an eye that is far from a scene of radius 1; 0 for others.
+double empty_depth(const glm::dvec3& eye, const glm::dvec3& forward) {
+    constexpr double far = 8.0;
+    return std::max(0.0, -glm::dot(eye, forward) - far);
+}
+
 void set_camera(gpu::Params& params, const Camera& camera, const SceneFrame& frame, Extent size) {
     const double half_height = std::tan(0.5 * camera.yfov);
     const double half_width = half_height * double(size.width) / double(size.height);
-    params.eye = glm::vec3(frame.point(glm::dvec3(camera.to_world[3])));
+    const glm::dvec3 eye = frame.point(glm::dvec3(camera.to_world[3])), forward = -glm::dvec3(camera.to_world[2]);
+    const double start = empty_depth(eye, forward);
+    params.start = float(start);
+    params.eye = glm::vec3(eye + double(params.start) * forward);
     params.right = glm::vec3(glm::dvec3(camera.to_world[0]) * half_width);
     params.up = glm::vec3(glm::dvec3(camera.to_world[1]) * half_height);
-    params.forward = glm::vec3(-glm::dvec3(camera.to_world[2]));
+    params.forward = glm::vec3(forward);
     params.width = size.width;
     params.height = size.height;
     params.pixel_radius = float(2.0 * half_height / double(size.height) / std::sqrt(std::numbers::pi));

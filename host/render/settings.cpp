@@ -76,7 +76,7 @@ void check_lens(double aperture, const std::optional<double>& focus_distance) {
 Settings resolve_settings(const Settings& settings, const Scene& scene) {
     Settings resolved = settings;
     const EstimatorRow& estimator = find_estimator(settings.estimator);
-    check_range<std::uint32_t>("--iterations", settings.iterations, 1, 0x7fffffffu);
+    check_range<std::uint32_t>("--iterations", settings.iterations, 1, max_iterations);
     if (settings.seconds) check_open("--time", *settings.seconds, 0.0, 1e9);
     check_range<std::uint32_t>("--photons", settings.photons, 1, 1u << 24);
     check_lens(settings.aperture, settings.focus_distance);

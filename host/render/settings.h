@@ -9,9 +9,12 @@
 
 namespace vkcppm {
 
+/// Beyond, the counter of random numbers starts again and iterations repeat.
+inline constexpr std::uint32_t max_iterations = (1u << 30) - 1;
+
 struct Settings {
     std::string estimator = "cppm";         // a name of render/estimators.h
-    std::uint32_t iterations = 64;          // 1..2^31-1; an upper bound where `seconds` is set
+    std::uint32_t iterations = 64;          // 1..max_iterations; an upper bound where `seconds` is set
     std::optional<double> seconds;          // stop after the iteration in which this wall time is passed
     std::uint32_t photons = 65536;          // light paths emitted an iteration, 1..2^24
     std::optional<Extent> size;             // default: 512 on the longer side at the camera's aspect

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
 #include "scene/alpha.h"
@@ -26,6 +27,9 @@ constexpr double most_radiance = 1e8;          // W m^-2 sr^-1; the sun's surfac
 constexpr double least_intensity = 1e-6;       // W/sr; an indicator lamp has 1e-4
 constexpr double least_irradiance = 1e-6;      // W/m^2; a clear night without a moon
 constexpr double least_radiance = 1e-8;        // W m^-2 sr^-1; the night sky has 1e-7
+
+// Discs of photons do not shrink below 10^-6 of the scene's radius, and rays start as far off a surface that is as large.
+constexpr double least_extent = 2e-5;          // of the scene's, for ten such discs across
 
 constexpr std::size_t most_solid_angles = std::size_t(1) << 22;  // a quarter of a second
 
@@ -95,6 +99,7 @@ public:
         check_thin_glass();
         check_solid_glass();
         check_alpha();
+        check_extents();
         check_presence();
         check_intensities();
         return warnings_.lines(scene_.file.string());
@@ -171,6 +176,36 @@ private:
                           "makes it clear",
                           fmt::format("{}, alphaMode {}, alpha down to {:.3g}", triangle_name(*first[i]),
                                       material.alpha == Material::Alpha::blend ? "BLEND" : "MASK", alphas[i]));
+        }
+    }
+
+    // ---- sizes ----
+
+    /// Diagonal of the box round triangles [first, last); 0 of none.
+    double extent(std::size_t first, std::size_t last) const {
+        if (first >= last) return 0.0;
+        glm::dvec3 low = scene_.positions[scene_.triangles[first].vertex[0]], high = low;
+        for (std::size_t i = first; i < last; ++i) {
+            for (const std::uint32_t v : scene_.triangles[i].vertex) {
+                low = glm::min(low, scene_.positions[v]);
+                high = glm::max(high, scene_.positions[v]);
+            }
+        }
+        return glm::length(high - low);
+    }
+
+    void check_extents() {
+        const double whole = extent(0, scene_.triangles.size());
+        for (std::size_t i = 0; i < scene_.mesh_nodes.size(); ++i) {
+            const std::size_t first = scene_.mesh_nodes[i].first_triangle;
+            const std::size_t last =
+                i + 1 < scene_.mesh_nodes.size() ? scene_.mesh_nodes[i + 1].first_triangle : scene_.triangles.size();
+            const double part = extent(first, last);
+            if (first >= last || part >= least_extent * whole) continue;
+            if (emits(scene_.materials[scene_.triangles[first].material])) continue;
+            warnings_.add("too small beside the scene: the light on it is blurred over all of it",
+                          fmt::format("{} is {:.3g} m across, the scene {:.3g} m",
+                                      triangle_name(std::uint32_t(first)), part, whole));
         }
     }
 

@@ -20,7 +20,7 @@ void clear_statistics(uint pixel) {
             break;
         case ESTIMATOR_FTEST:
         case ESTIMATOR_FTEST_FOLD:
-            for (uint row = 0u; row < 2u * DISC_CELLS + RINGS; ++row) moments[row_of(row, pixel)] = 0.0;
+            for (uint row = 0u; row < FTEST_MOMENTS; ++row) moments[row_of(row, pixel)] = 0.0;
             break;
         default:
             for (uint row = 0u; row < DISC_CELLS; ++row) tally[row_of(row, pixel)] = 0u;
@@ -28,14 +28,25 @@ void clear_statistics(uint pixel) {
     }
 }
 
+// Starts the statistics again with the disc as it is.
+void forget(uint pixel, inout PixelState state) {
+    state.total = 0u;
+    state.count = 0.0;
+    state.count_low = 0.0;
+    clear_statistics(pixel);
+}
+
 // Once a batch is full, the disc is tested in every iteration. After a rejection the largest inner disc that passes
 // becomes the disc (rings have equal areas), or the area shrinks by k where none does; the statistics start again and
-// the batch grows by beta.
+// the batch grows by beta. A disc that has passed with as many photons as counters hold starts them again, too.
 void algorithm1_update(uint pixel, uint found, inout PixelState state) {
-    state.total += found;
-    if (float(state.total) < state.batch) return;
+    state.total += found;  // an iteration stores fewer than 2^27 photons: no sum of the tally reaches 2^32
+    if (!batch_is_full(state)) return;
     state.statistic = test_ratio(pixel, RINGS, state);
-    if (state.statistic < 1.0) return;
+    if (state.statistic < 1.0) {
+        if (float(state.total) >= MOST_PHOTONS) forget(pixel, state);
+        return;
+    }
     float factor = params.k;
     for (uint rings = RINGS - 1u; rings > 0u; --rings) {
         if (test_ratio(pixel, rings, state) < 1.0) {
@@ -44,9 +55,7 @@ void algorithm1_update(uint pixel, uint found, inout PixelState state) {
         }
     }
     state.radius2 *= factor;
-    state.total = 0u;
-    state.count = 0.0;
     state.batch *= params.beta;
     ++state.rejections;
-    clear_statistics(pixel);
+    forget(pixel, state);
 }

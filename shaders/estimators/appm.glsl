@@ -1,7 +1,7 @@
 // APPM: Kaplanyan and Dachsbacher 2013, in a form whose units agree. The radius balances variance and squared bias:
 // r = [2 R V / (N kappa^2 Delta^2)]^(1/6), V the second moment of the contribution's luminance per area and path, Delta
 // the Laplacian of the radiance's luminance, N paths so far. Both are means over iterations; Delta by the five-point
-// stencil of the kernel with the pilot bandwidth r_d. Uses K(t) = 7/(2 pi) (1 - 10 t^3 + 15 t^4 - 6 t^5).
+// stencil of the kernel with the pilot bandwidth r_d; luminances times params.flux_unit. Uses K(t) = 7/(2 pi) (1 - 10 t^3 + 15 t^4 - 6 t^5).
 
 const float APPM_KAPPA = 5.0 / 48.0;              // int x_1^2 K
 const float APPM_ROUGHNESS = 287.0 / (132.0 * PI);  // int K^2
@@ -34,7 +34,7 @@ vec2 appm_sums;
 
 void appm_record(uint pixel, Accepted photon, bool inside) {
     float radius2 = pixels[pixel].radius2;
-    float y = luminance(hit_weight[pixel].weight * photon.power) * params.inverse_paths;
+    float y = luminance(hit_weight[pixel].weight * photon.power) * (params.inverse_paths * params.flux_unit);
     if (inside) {
         appm_sums.x += y * y * (float(params.photons) * appm_kernel_weight(photon.q) / (PI * radius2));
     }
@@ -57,14 +57,16 @@ void appm_flush(uint pixel) {
 }
 
 void appm_update(uint pixel, bool diffuse, uint found, inout PixelState state) {
-    state.total += found;
+    state.total = add_saturated(state.total, found);
     if (!diffuse) return;
     if (state.count == 0.0) moments[row_of(APPM_FIRST_RADIUS2, pixel)] = state.radius2;
-    state.count += 1.0;
+    add(state.count, state.count_low, 1.0);
     for (uint row = 0u; row < 2u; ++row) {
         float mean = moments[row_of(APPM_SECOND_MOMENT + row, pixel)];
-        mean += (moments[row_of(row, pixel)] - mean) / state.count;
+        float low = moments[row_of(APPM_SECOND_MOMENT_LOW + row, pixel)];
+        average(mean, low, moments[row_of(row, pixel)], state.count);
         moments[row_of(APPM_SECOND_MOMENT + row, pixel)] = mean;
+        moments[row_of(APPM_SECOND_MOMENT_LOW + row, pixel)] = low;
         moments[row_of(row, pixel)] = 0.0;
     }
     float first = sqrt(moments[row_of(APPM_FIRST_RADIUS2, pixel)]);

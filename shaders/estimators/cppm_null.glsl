@@ -1,7 +1,7 @@
 // The ablation of cppm: every full batch shrinks the area by k, without a test.
 void cppm_null_update(uint found, inout PixelState state) {
-    state.total += found;
-    if (float(state.total) < state.batch) return;
+    state.total = add_saturated(state.total, found);
+    if (!batch_is_full(state)) return;
     state.radius2 *= params.k;
     state.total = 0u;
     state.batch *= params.beta;

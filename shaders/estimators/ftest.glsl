@@ -3,7 +3,22 @@
 // the eye path) that fell there: it sees gradients of flux at constant density, and photons that come in clusters.
 // ftest-fold adds opposite sectors first. Choices where the abstract is silent: cells as cppm, batches as cppm.
 // Moments: rows [0, c) sums of this iteration | [c, 2c) means of the cells | [2c, 2c + rings) sums of squared
-// deviations within the cells of a ring (Welford's recurrence: nothing cancels).
+// deviations within the cells of a ring (Welford's recurrence: nothing cancels) | [2c + rings, 3c + 2 rings) the low
+// parts of means and squares: after 10^6 samples one of them is less than the rounding of their sum.
+
+const uint FTEST_MEANS = DISC_CELLS;
+const uint FTEST_SQUARES = 2u * DISC_CELLS;
+const uint FTEST_LOW = DISC_CELLS + RINGS;  // from a mean or a sum of squares to its low part
+const uint FTEST_MOMENTS = 3u * DISC_CELLS + 2u * RINGS;
+
+// The sum that stands in `row` and what it lacks.
+void add_moment(uint row, uint pixel, float value) {
+    float sum = moments[row_of(row, pixel)];
+    float low = moments[row_of(row + FTEST_LOW, pixel)];
+    add(sum, low, value);
+    moments[row_of(row, pixel)] = sum;
+    moments[row_of(row + FTEST_LOW, pixel)] = low;
+}
 
 layout(binding = BIND_QUANTILES, scalar) readonly buffer QuantileBlock { float f_quantiles[]; };
 
@@ -12,7 +27,7 @@ float contributed[DISC_CELLS];
 
 void ftest_record(uint pixel, Accepted photon) {
     uint bin = cell_bin(photon.v, photon.q);
-    float x = luminance(hit_albedo(pixel) * photon.power);
+    float x = luminance(hit_albedo(pixel) * photon.power) * params.flux_unit;
     for (uint cell = 0u; cell < DISC_CELLS; ++cell) contributed[cell] += cell == bin ? x : 0.0;
 }
 
@@ -28,13 +43,12 @@ void ftest_flush(uint pixel) {
 // Takes this iteration's sums as one more sample of every cell.
 void ftest_sample(uint pixel, bool diffuse, inout PixelState state) {
     if (!diffuse) return;
-    state.count += 1.0;
+    add(state.count, state.count_low, 1.0);
     for (uint bin = 0u; bin < DISC_CELLS; ++bin) {
         float x = moments[row_of(bin, pixel)];
-        float mean = moments[row_of(DISC_CELLS + bin, pixel)];
-        float next = mean + (x - mean) / state.count;
-        moments[row_of(DISC_CELLS + bin, pixel)] = next;
-        moments[row_of(2u * DISC_CELLS + bin / RING_CELLS, pixel)] += (x - mean) * (x - next);
+        float deviation = x - moments[row_of(FTEST_MEANS + bin, pixel)];
+        add_moment(FTEST_MEANS + bin, pixel, deviation / state.count);
+        add_moment(FTEST_SQUARES + bin / RING_CELLS, pixel, deviation * (x - moments[row_of(FTEST_MEANS + bin, pixel)]));
         moments[row_of(bin, pixel)] = 0.0;
     }
 }
@@ -53,15 +67,15 @@ float f_ratio(uint pixel, uint rings, float m) {
     if (m < 3.0) return 0.0;
     uint cells = rings * RING_CELLS;
     float mean = 0.0;
-    for (uint bin = 0u; bin < cells; ++bin) mean += moments[row_of(DISC_CELLS + bin, pixel)];
+    for (uint bin = 0u; bin < cells; ++bin) mean += moments[row_of(FTEST_MEANS + bin, pixel)];
     mean /= float(cells);
     float between = 0.0;
     for (uint bin = 0u; bin < cells; ++bin) {
-        float deviation = moments[row_of(DISC_CELLS + bin, pixel)] - mean;
+        float deviation = moments[row_of(FTEST_MEANS + bin, pixel)] - mean;
         between += deviation * deviation;
     }
     float within = 0.0;
-    for (uint ring = 0u; ring < rings; ++ring) within += moments[row_of(2u * DISC_CELLS + ring, pixel)];
+    for (uint ring = 0u; ring < rings; ++ring) within += moments[row_of(FTEST_SQUARES + ring, pixel)];
     if (between == 0.0) return 0.0;
     if (within == 0.0) return 3.0e38;
     float f = (m * between / float(cells - 1u)) / (within / (float(cells) * (m - 1.0)));

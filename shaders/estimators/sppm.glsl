@@ -3,6 +3,6 @@
 void sppm_update(uint found, inout PixelState state) {
     if (found == 0u) return;
     float m = float(found);
-    state.radius2 *= (state.count + params.alpha * m) / (state.count + m);
-    state.count += params.alpha * m;
+    add(state.radius2, state.radius2_low, -state.radius2 * ((1.0 - params.alpha) * m / (state.count + m)));
+    add(state.count, state.count_low, params.alpha * m);
 }

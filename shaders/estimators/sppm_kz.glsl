@@ -1,6 +1,6 @@
 // SPPM, probabilistic form: Knaus and Zwicker 2011. No local statistics: r_(i+1)^2 = r_i^2 (i + alpha) / (i + 1), with
 // i counted from the iteration in which the pixel got its first radius.
 void sppm_kz_update(inout PixelState state) {
-    state.count += 1.0;
-    state.radius2 -= state.radius2 * ((1.0 - params.alpha) / (state.count + 1.0));
+    add(state.count, state.count_low, 1.0);
+    add(state.radius2, state.radius2_low, -state.radius2 * ((1.0 - params.alpha) / (state.count + 1.0)));
 }

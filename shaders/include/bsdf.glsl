@@ -83,6 +83,9 @@ float below_coat(Bsdf b, float cosine) {
     return 1.0 - (b.coat0 + (b.coat90 - b.coat0) * schlick_power(cosine));
 }
 
+// alpha. A lobe narrower than the rounding of directions is a delta: its density would leave the range of floats.
+float lobe_width(float roughness) { return roughness < 3e-4 ? 0.0 : roughness * roughness; }
+
 // ior: index of the material for this path's wavelength. front: the ray comes from outside.
 Bsdf bsdf_of(SurfaceMaterial material, float ior, bool front) {
     Bsdf b;
@@ -91,7 +94,7 @@ Bsdf bsdf_of(SurfaceMaterial material, float ior, bool front) {
     b.transmission = b.glass * material.color;
     float opaque = (1.0 - material.metallic) - b.glass;  // dielectric that does not transmit
     b.diffuse = opaque * material.color;
-    b.alpha = material.roughness * material.roughness;
+    b.alpha = lobe_width(material.roughness);
     b.eta = front || b.thin ? 1.0 / ior : ior;
     b.r0 = material.metallic * material.color;
     b.r90 = material.metallic;
@@ -105,7 +108,7 @@ Bsdf bsdf_of(SurfaceMaterial material, float ior, bool front) {
         b.coat90 = material.specular;
     }
     b.clearcoat = material.clearcoat;
-    b.clearcoat_alpha = material.clearcoat_roughness * material.clearcoat_roughness;
+    b.clearcoat_alpha = lobe_width(material.clearcoat_roughness);
     return b;
 }
 

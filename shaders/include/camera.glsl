@@ -2,24 +2,26 @@
 #define LENS_DIMENSION 6u  // stratified dimensions 0 and 1 place the ray in the pixel, 6 and 7 on the lens
 
 // Ray number `sequence` of a pixel, through a random point of it (box filter) and of the lens; distance: from the eye to
-// `origin`, at the scene's bounds.
+// `origin`, at the scene's bounds. It begins in the plane of depth `start`, for whose points the host has taken the eye's
+// distance into account in double precision: from far away a direction in floats would miss what it aims at.
 void camera_ray(uint pixel, uint sequence, out vec3 origin, out vec3 direction, out float distance) {
     vec2 jitter = vec2(stratified(params.seed, sequence, pixel, 0u),
                        stratified(params.seed, sequence, pixel, 1u));
     vec2 raster = vec2(pixel % params.width, pixel / params.width) + jitter;
     vec2 film = 2.0 * raster / vec2(params.width, params.height) - 1.0;
     vec3 through = params.forward + film.x * params.right - film.y * params.up;
-    vec3 eye = params.eye;
+    vec3 eye = params.eye + params.start * (film.x * params.right - film.y * params.up);
+    distance = params.start * length(through);
     if ((FEATURES & FEATURE_LENS) != 0u) {
         // A thin lens: what lies in the plane of focus is met by rays from all of it.
         vec2 u = vec2(stratified(params.seed, sequence, pixel, LENS_DIMENSION),
                       stratified(params.seed, sequence, pixel, LENS_DIMENSION + 1u));
         vec2 lens = params.lens_radius * sample_disc(u);
         vec3 offset = lens.x * normalize(params.right) + lens.y * normalize(params.up);
-        eye += offset;
+        eye += offset * (1.0 - params.start / params.focus_distance);
         through = through * params.focus_distance - offset;
     }
     direction = normalize(through);
     origin = enter_bounds(eye, direction);
-    distance = length(origin - eye);
+    distance += length(origin - eye);
 }

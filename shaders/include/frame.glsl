@@ -32,6 +32,15 @@ void tangents(vec3 n, out vec3 t, out vec3 b) {
     b = vec3(c, s + n.y * n.y * a, -n.y);
 }
 
+// Unit normal of the triangle with these edges. Scaled by a power of two first: the squared length of the product of
+// edges below 1e-10 leaves the range of floats.
+vec3 face_normal(vec3 e1, vec3 e2) {
+    vec3 m = max(abs(e1), abs(e2));
+    float longest = max(m.x, max(m.y, m.z));
+    float scale = uintBitsToFloat((254u << 23) - (floatBitsToUint(longest) & 0x7f800000u));
+    return normalize(cross(e1 * scale, e2 * scale));
+}
+
 vec3 from_frame(vec3 n, vec3 local) {
     vec3 t, b;
     tangents(n, t, b);

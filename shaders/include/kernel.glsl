@@ -33,4 +33,9 @@ void block_after(uint own) {
     if (launch.last_round != 0u) atomicOr(status.blocked, own);
 }
 
+void count_rays(uint rays) {
+    uint before = atomicAdd(status.rays, rays);
+    if (before + rays < before) atomicAdd(status.rays_high, 1u);
+}
+
 uint pixel_count() { return params.width * params.height; }

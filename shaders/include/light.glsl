@@ -45,8 +45,7 @@ vec3 sample_punctual(float u, vec3 position, out vec3 direction, out float dista
     distance = length(towards);
     direction = towards / distance;
     if (light.kind == LIGHT_SPOT) {
-        float fall = clamp((-dot(direction, light.e1) - light.e2.y) / (light.e2.x - light.e2.y), 0.0, 1.0);
-        intensity *= fall * fall;
+        intensity *= spot_attenuation(light.e2.x, light.e2.y, versine(-direction, light.e1));
     }
     return intensity / (distance * distance);
 }
@@ -117,7 +116,7 @@ LightSample sample_light(uvec4 bits, vec2 v, vec3 position) {
         s.distance = length(towards);
         s.direction = towards / s.distance;
         bool double_sided = light.double_sided != 0u;
-        float cosine = -dot(s.direction, normalize(cross(light.e1, light.e2)));
+        float cosine = -dot(s.direction, face_normal(light.e1, light.e2));
         cosine = double_sided ? abs(cosine) : max(0.0, cosine);
         s.triangle = texelFetch(lights, int(index) * LIGHT_TEXELS + 5).z;
         SurfaceMaterial material = factors_of(texelFetch(shading, int(s.triangle)).w & ~SHADING_FLAT);
@@ -134,9 +133,8 @@ LightSample sample_light(uvec4 bits, vec2 v, vec3 position) {
         if (light.kind == LIGHT_POINT) {
             s.radiance /= 4.0 * PI;
         } else {
-            float width = light.e2.x - light.e2.y;
-            float fall = clamp((-dot(s.direction, light.e1) - light.e2.y) / width, 0.0, 1.0);
-            s.radiance *= fall * fall / (2.0 * PI * (1.0 - light.e2.x + width / 3.0));
+            s.radiance *= spot_attenuation(light.e2.x, light.e2.y, versine(-s.direction, light.e1)) /
+                          (2.0 * PI * (light.e2.x + (light.e2.y - light.e2.x) / 3.0));
         }
     }
     if ((FEATURES & FEATURE_DIRECTIONAL_LIGHTS) != 0u && light.kind == LIGHT_DIRECTIONAL) {
@@ -163,7 +161,7 @@ uint emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 powe
     // One kind after the other, each only where the scene has it.
     if ((FEATURES & FEATURE_AREA_LIGHTS) != 0u && light.kind == LIGHT_TRIANGLE) {
         vec2 b = sample_triangle(u.zw);
-        vec3 n = normalize(cross(light.e1, light.e2));
+        vec3 n = face_normal(light.e1, light.e2);
         if (light.double_sided != 0u && v.w < 0.5) n = -n;
         direction = normalize(from_frame(n, sample_cosine(v.xy)));
         // Off the emitter by its rounding error, as `leave` does; its error travels in e-vectors' scale.
@@ -177,7 +175,7 @@ uint emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 powe
         origin = light.position;
     }
     if ((FEATURES & FEATURE_SPOT_LIGHTS) != 0u && light.kind == LIGHT_SPOT) {
-        direction = normalize(from_frame(light.e1, sample_azimuth(sample_spot_cosine(light.e2.x, light.e2.y, v.x), v.y)));
+        direction = normalize(from_frame(light.e1, sample_cone(sample_spot_versine(light.e2.x, light.e2.y, v.x), v.y)));
         origin = light.position;
     }
     if ((FEATURES & FEATURE_DIRECTIONAL_LIGHTS) != 0u && light.kind == LIGHT_DIRECTIONAL) {

@@ -28,10 +28,27 @@ vec2 sample_triangle(vec2 u) {
     return vec2(s * (1.0 - u.y), s * u.y);
 }
 
-// Cosine about the axis of a glTF spot light, density proportional to its angular attenuation
-// clamp((c - outer) / (inner - outer), 0, 1)^2: cubic cumulative distribution between the cones, linear inside.
-float sample_spot_cosine(float inner, float outer, float u) {
-    float edge = (inner - outer) / 3.0;  // integral over the falloff
-    float x = u * (edge + 1.0 - inner);
-    return x < edge ? outer + (inner - outer) * pow(x / edge, 1.0 / 3.0) : inner + (x - edge);
+// 1 - cos of the angle between unit vectors: no cancellation where it is small.
+float versine(vec3 a, vec3 b) { return 0.5 * dot(a - b, a - b); }
+
+// About +z with the given versine of the polar angle, uniform in azimuth.
+vec3 sample_cone(float v, float u) {
+    float sin_theta = sqrt(max(0.0, v * (2.0 - v)));
+    float phi = 2.0 * PI * u;
+    return vec3(sin_theta * cos(phi), sin_theta * sin(phi), 1.0 - v);
+}
+
+// The angular attenuation of a glTF spot light: inner, outer: versines of its cones. Cosines of cones below 1e-3 rad are
+// 1 but for their last bits.
+float spot_attenuation(float inner, float outer, float v) {
+    float fall = clamp((outer - v) / (outer - inner), 0.0, 1.0);
+    return fall * fall;
+}
+
+// Versine of the angle to the axis of a glTF spot light, density proportional to its attenuation: cubic cumulative
+// distribution between the cones, linear inside.
+float sample_spot_versine(float inner, float outer, float u) {
+    float edge = (outer - inner) / 3.0;  // integral over the falloff
+    float x = u * (edge + inner);
+    return max(0.0, x < edge ? outer - (outer - inner) * pow(x / edge, 1.0 / 3.0) : inner - (x - edge));
 }

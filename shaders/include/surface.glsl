@@ -10,16 +10,23 @@ struct Surface {
     uint material;
 };
 
-Surface surface_at(Hit hit, vec3 direction) {
+// Moves the hit into its triangle: the slack lets it lie outside by rounding, which is far in barycentrics of a sliver.
+Surface surface_at(inout Hit hit, vec3 direction) {
     int texel = int(hit.triangle) * 3;
     vec4 v0 = texelFetch(triangles, texel);
-    vec3 e1 = texelFetch(triangles, texel + 1).xyz;
-    vec3 e2 = texelFetch(triangles, texel + 2).xyz;
+    vec4 edge1 = texelFetch(triangles, texel + 1);
+    vec4 edge2 = texelFetch(triangles, texel + 2);
+    vec3 e1 = edge1.xyz;
+    vec3 e2 = edge2.xyz;
+    vec2 inside = max(hit.barycentric, vec2(0.0));
+    // Over the third edge: back along the shorter one of the others, mostly.
+    inside -= max(0.0, inside.x + inside.y - 1.0) * vec2(edge1.w, edge2.w) / (edge1.w + edge2.w);
+    hit.barycentric = max(inside, vec2(0.0));
     uvec4 corner = texelFetch(shading, int(hit.triangle));
     Surface surface;
     // Barycentrics put the point within the rounding error of the plane, however long the ray was.
     surface.position = v0.xyz + hit.barycentric.x * e1 + hit.barycentric.y * e2;
-    surface.geometric = normalize(cross(e1, e2));
+    surface.geometric = face_normal(e1, e2);
     surface.front = dot(surface.geometric, direction) < 0.0;
     surface.error = v0.w;
     surface.material = corner.w & ~SHADING_FLAT;

@@ -17,18 +17,20 @@ void intersect_triangle(uint index, vec3 origin, vec3 direction, inout Hit hit) 
     int texel = int(index) * 3;
     vec3 v0 = texelFetch(triangles, texel).xyz;
     vec4 e1 = texelFetch(triangles, texel + 1);
-    vec3 e2 = texelFetch(triangles, texel + 2).xyz;
-    vec3 p = cross(direction, e2);
+    vec4 e2 = texelFetch(triangles, texel + 2);
+    vec3 p = cross(direction, e2.xyz);
     float inverse = 1.0 / dot(e1.xyz, p);
     vec3 s = origin - v0;
     // Both triangles of a shared edge accept a hit within rounding of it: closed meshes stay closed.
-    float slack = e1.w * max(abs(s.x), max(abs(s.y), abs(s.z))) * abs(inverse);
+    vec2 slack = vec2(e1.w, e2.w) * (max(abs(s.x), max(abs(s.y), abs(s.z))) * abs(inverse));
     float u = dot(s, p) * inverse;
     vec3 q = cross(s, e1.xyz);
     float v = dot(direction, q) * inverse;
-    float t = dot(e2, q) * inverse;
+    float t = dot(e2.xyz, q) * inverse;
     // A parallel ray divides by zero: u, v, t are then infinite or NaN and a comparison fails.
-    if (u >= -slack && v >= -slack && u + v <= 1.0 + slack && t > 0.0 && t < hit.t) {
+    // At the tip of a needle the third edge alone would let pass what is far beyond it.
+    if (u >= -slack.x && v >= -slack.y && u + v <= 1.0 + max(slack.x, slack.y) && u <= 1.0 + slack.x &&
+        v <= 1.0 + slack.y && t > 0.0 && t < hit.t) {
         hit = Hit(t, index, vec2(u, v));
     }
 }

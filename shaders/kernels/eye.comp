@@ -9,6 +9,7 @@
 #include "include/rng.glsl"
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
+#include "include/sum.glsl"
 #include "include/scene.glsl"
 #include "include/texture.glsl"
 #include "include/traverse.glsl"
@@ -80,6 +81,11 @@ void main() {
             break;
         }
         if (found == TRACE_MISS) {
+            // A ray that goes nowhere meets nothing: the update pass is to hear of it.
+            if (!finite(direction)) {
+                emission += direction;
+                break;
+            }
             if ((FEATURES & FEATURE_ENVIRONMENT) != 0u && sees_light(memory)) {
                 emission += throughput * environment_radiance(direction);
             }
@@ -101,8 +107,11 @@ void main() {
         if ((FEATURES & FEATURE_AOVS) != 0u && (memory & PATH_SEEN) == 0u) {
             memory |= PATH_SEEN;
             Aovs sum = aovs[pixel];
-            aovs[pixel] = Aovs(sum.albedo + material.color, sum.normal + surface.normal,
-                               sum.depth + distance * dot(direction, params.forward), sum.hits + 1u);
+            add(sum.albedo, sum.albedo_low, material.color);
+            add(sum.normal, sum.normal_low, surface.normal);
+            add(sum.depth, sum.depth_low, distance * dot(direction, params.forward));
+            ++sum.hits;
+            aovs[pixel] = sum;
         }
         if ((FEATURES & FEATURE_UNLIT) != 0u && has(material, SURFACE_UNLIT)) {
             // What emits no photons must not be seen by rough lobes: photons would have to bring their share of it.
@@ -178,5 +187,5 @@ void main() {
     hit_weight[pixel] = weight;
     hit_emission[pixel] = HitEmission(
         emission, (position.state & HIT_MASK) == HIT_UNFINISHED ? distance : distance * params.pixel_radius);
-    if (rays > 1u) atomicAdd(status.rays, rays - 1u);  // the host knows of the first of every pixel
+    if (rays > 1u) count_rays(rays - 1u);  // the host knows of the first of every pixel
 }

@@ -9,6 +9,7 @@
 #include "include/kernel.glsl"
 #include "include/rng.glsl"
 #include "include/sampling.glsl"
+#include "include/sum.glsl"
 #include "include/frame.glsl"
 #include "include/scene.glsl"
 #include "include/texture.glsl"
@@ -40,7 +41,7 @@ void main() {
     uint pixel = invocation();
     if (pixel >= pixel_count() || blocked(PASS_GATHER)) return;
     Cursor cursor = Cursor(uvec3(CURSOR_START), 0u);
-    Gathered sum = Gathered(vec3(0.0), 0u);
+    Gathered sum = Gathered(vec3(0.0), 0u, vec3(0.0));
     if (!gathers(pixel)) {
         gathered[pixel] = sum;
         return;
@@ -92,7 +93,8 @@ void main() {
             }
             bool inside = squared < radius2;
             float q = squared * inverse_radius * inverse_radius;
-            sum.flux += inside ? power * kernel_weight(q, (flux.y & 0x80000000u) != 0u) : vec3(0.0);
+            add_corrected(sum.flux, sum.excess,
+                          inside ? power * kernel_weight(q, (flux.y & 0x80000000u) != 0u) : vec3(0.0));
             sum.count += inside ? 1u : 0u;
             record(pixel, Accepted(vec2(dot(offset, tangent), dot(offset, bitangent)), q, power, walk.first), inside);
         }

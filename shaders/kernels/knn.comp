@@ -9,6 +9,7 @@
 #include "include/kernel.glsl"
 #include "include/rng.glsl"
 #include "include/sampling.glsl"
+#include "include/sum.glsl"
 #include "include/frame.glsl"
 #include "include/grid.glsl"
 #include "include/search.glsl"
@@ -56,7 +57,7 @@ void main() {
         }
         if ((FEATURES & FEATURE_SPLIT) != 0u) return;
         // A pixel that failed before will hardly find k photons nearby: it looks through its whole disc at once.
-        kept = Gathered(vec3(-1.0, 0.0, first ? min(cap, grid.cell) : cap), 0u);
+        kept = Gathered(vec3(-1.0, 0.0, first ? min(cap, grid.cell) : cap), 0u, vec3(0.0));
     } else {
         cursor = cursors[pixel];
         if (cursor.cell.x == CURSOR_DONE) return;
@@ -84,7 +85,7 @@ void main() {
             }
         })
         if (!walked(cursor, box) || kept.count == params.knn || kept.flux.z >= cap) break;
-        kept = Gathered(vec3(-1.0, 0.0, min(cap, 2.0 * kept.flux.z)), 0u);
+        kept = Gathered(vec3(-1.0, 0.0, min(cap, 2.0 * kept.flux.z)), 0u, vec3(0.0));
         cursor = Cursor(uvec3(CURSOR_START), 0u);
     }
     if (!walked(cursor, box)) {
@@ -97,9 +98,11 @@ void main() {
         // What was counted with the largest radius says nothing about this one.
         PixelState state = pixels[pixel];
         state.radius2 = max(kept.flux.x, RADIUS2_MIN);
+        state.radius2_low = 0.0;
         state.seeded = 1u;
         state.total = 0u;
         state.count = 0.0;
+        state.count_low = 0.0;
         clear_statistics(pixel);
         pixels[pixel] = state;
     }

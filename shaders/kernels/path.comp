@@ -10,6 +10,7 @@
 #include "include/rng.glsl"
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
+#include "include/sum.glsl"
 #include "include/scene.glsl"
 #include "include/texture.glsl"
 #include "include/traverse.glsl"
@@ -26,10 +27,6 @@ layout(binding = BIND_IMAGE, scalar) writeonly buffer ImageBlock { vec3 image[];
 
 #define FIRST_ROULETTE 4u      // bounce from which Russian roulette decides whether a path goes on
 #define FIRST_DIMENSION 16u    // of random numbers, beyond the stratified ones; three a bounce
-
-bool finite(vec3 v) {
-    return all(notEqual(floatBitsToUint(v) & 0x7f800000u, uvec3(0x7f800000u)));
-}
 
 TraceState new_path(uint done, vec3 sum) {
     return TraceState(vec3(0.0), PATH_OUTSIDE | PATH_STRAIGHT, vec3(0.0), DELTA, vec3(1.0), 0.0, vec3(0.0), done, sum, 0u,
@@ -199,5 +196,5 @@ void main() {
     }
     traces[pixel] = state;
     if (state.done == launch.count) image[pixel] = state.sum / float(launch.count);
-    atomicAdd(status.rays, rays);
+    count_rays(rays);
 }

@@ -8,6 +8,7 @@
 #include "include/rng.glsl"
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
+#include "include/sum.glsl"
 #include "include/scene.glsl"
 #include "include/texture.glsl"
 #include "include/traverse.glsl"
@@ -98,7 +99,10 @@ void main() {
         ++rays;
         ++state.memory;
         uint bounces = state.memory & PATH_BOUNCES;
-        bool alive = found == TRACE_HIT;
+        // A photon that is no number would make one of every disc that it falls into.
+        bool valid = finite(state.power) && finite(state.direction);
+        if (!valid) atomicAdd(status.invalid, 1u);
+        bool alive = found == TRACE_HIT && valid;
         if (alive) {
             Surface surface = surface_at(hit, state.direction);
             SurfaceMaterial material = material_at(hit, state.direction, surface);
@@ -185,5 +189,5 @@ void main() {
         atomicMax(status.capacity, state.stored);
         atomicOr(status.blocked, PASS_CAPACITY);
     }
-    atomicAdd(status.rays, rays);
+    count_rays(rays);
 }

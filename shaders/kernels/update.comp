@@ -6,25 +6,12 @@
 #include "include/kernel.glsl"
 #include "include/rng.glsl"
 #include "include/sampling.glsl"
+#include "include/sum.glsl"
 #include "include/hits.glsl"
 #include "include/pixels.glsl"
 #include "estimators/estimator.glsl"
 
 layout(binding = BIND_FILM, scalar) buffer FilmBlock { Film film[]; };
-
-bool finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
-
-// Sum in two floats, `low` below half an ulp of `sum` (Dekker 1971): 10^6 additions err by 10^6 2^-47 of the sum. A
-// `low` that is only added to (Neumaier 1974) grows until its own rounding shows, with the square of their number.
-void add(inout float sum, inout float low, float value) {
-    precise float total = sum + value;
-    precise float lost = abs(sum) >= abs(value) ? (sum - total) + value : (value - total) + sum;
-    precise float carried = low + lost;
-    precise float renewed = total + carried;
-    precise float rest = carried - (renewed - total);
-    sum = renewed;
-    low = rest;
-}
 
 void main() {
     uint pixel = invocation();
@@ -37,11 +24,9 @@ void main() {
         // L = W rho / pi * sum(power) / (pi R^2 J), the radius being that before this update.
         estimate += hit_weight[pixel].weight * sum.flux * (params.inverse_paths / (PI * state.radius2));
     }
-    if (finite(estimate.x) && finite(estimate.y) && finite(estimate.z)) {
+    if (finite(estimate)) {
         Film f = film[pixel];
-        add(f.sum.x, f.low.x, estimate.x);
-        add(f.sum.y, f.low.y, estimate.y);
-        add(f.sum.z, f.low.z, estimate.z);
+        add(f.sum, f.low, estimate);
         film[pixel] = f;
     } else {
         atomicAdd(status.invalid, 1u);
@@ -49,7 +34,7 @@ void main() {
     if (state.radius2 > 0.0) {
         if (diffuse) {
             ++state.seen;
-            state.photons += sum.count;
+            state.photons = add_saturated(state.photons, sum.count);
         }
         update(pixel, diffuse, diffuse ? sum.count : 0u, state);
         state.radius2 = max(state.radius2, RADIUS2_MIN);

@@ -19,7 +19,9 @@
 #define APPM_SECOND_MOMENT 2       // mean over iterations: V
 #define APPM_LAPLACIAN 3           // mean over iterations: Delta
 #define APPM_FIRST_RADIUS2 4       // r_1^2
-#define APPM_MOMENTS 5
+#define APPM_SECOND_MOMENT_LOW 5   // low parts of the means
+#define APPM_LAPLACIAN_LOW 6
+#define APPM_MOMENTS 7
 
 // Quantiles of the F distribution: samples of a row, uniform in 1 / (m - 1) over [0, 1/2].
 #define F_QUANTILES 129

@@ -129,9 +129,9 @@ struct TriangleGeometry {
     vec3 v0;
     float error;       // bound of the rounding error of a point on it: rays start this far off its plane
     vec3 e1;           // v1 - v0
-    float slack;       // bound of the rounding of barycentrics, for a ray origin at distance 1 and a determinant of 1
+    float slack_u;     // bounds of the rounding of barycentrics, for a ray origin at distance 1 and a determinant of 1
     vec3 e2;           // v2 - v0
-    uint unused;
+    float slack_v;
 };
 
 // 16 bytes, read as 1 uvec4 texel.
@@ -183,7 +183,7 @@ struct Light {
     uint kind;         // LIGHT_*
     vec3 e1;           // triangle: edge; spot, directional: unit direction of travel
     float keep;        // alias table: probability to keep this entry
-    vec3 e2;           // triangle: edge; spot: (cos inner, cos outer, -); directional, environment: (radius of the disc, -, -)
+    vec3 e2;           // triangle: edge; spot: (1 - cos inner, 1 - cos outer, -); directional, environment: (radius of the disc, -, -)
     uint alias_entry;  // alias table: the other entry
     vec3 power;        // W (frame-scaled); environment: the mean channel alone, times the colour of the pixel drawn
     uint double_sided; // triangle
@@ -249,6 +249,7 @@ struct HitSurface {
 struct Gathered {
     vec3 flux;         // sum of photon power * correction, without the hit's weight
     uint count;        // accepted photons
+    vec3 excess;       // what rounding has left too much in flux (Kahan 1965)
 };
 
 // What a pixel remembers between iterations.
@@ -257,20 +258,26 @@ struct PixelState {
     uint seeded;       // 1 once the k-th nearest photon gave the radius; 0: radius2 is the cap
     float count;       // sppm: N of Hachisuka and Jensen; sppm-kz, appm: iterations since the radius was seeded;
                        // ftest: iterations since the last rejection
-    uint total;        // photons accepted since the last reset of the tally
+    uint total;        // photons accepted since the last reset of the tally; stays at its largest value
     float batch;       // B, photons to see before a test
     uint rejections;
-    uint photons;      // accepted in all
+    uint photons;      // accepted in all; stays at its largest value
     uint seen;         // iterations in which the pixel saw a diffuse surface
     float statistic;   // of the last test of the whole disc, over its threshold
+    float radius2_low; // radius2 + radius2_low: R^2 where a schedule shrinks it by little in every iteration
+    float count_low;   // count + count_low: the count, beyond what a float holds
 };
 
 // What a picture's first surfaces are like: sums over the iterations in which the pixel met one.
+// Each in two floats, as Film.
 struct Aovs {
     vec3 albedo;       // base colour
     vec3 normal;       // shading, world axes
     float depth;       // along the camera's axis, scene frame
     uint hits;
+    vec3 albedo_low;
+    vec3 normal_low;
+    float depth_low;
 };
 
 // Sum of radiance in two floats: sum + low is the estimate times the iterations.
@@ -347,15 +354,15 @@ struct Status {
     uint capacity;     // largest number of photons that one lane wanted to store
     uint stuck;        // rays that need more than a whole budget: the scene cannot be traced
     uint invalid;      // contributions dropped because they were not finite
-    uint rays;         // traced since the host last cleared it
+    uint rays;         // traced since the host last cleared it, low word
     uint stored;       // photons stored since the host last cleared it
-    uint unused;
+    uint rays_high;
     uint radius_histogram[RADIUS_BINS];
 };
 
 // Per render.
 struct Params {
-    vec3 eye;
+    vec3 eye;              // where the lens is, plus `start` along the axis
     uint width;
     vec3 right;            // half of the image plane at distance 1
     uint height;
@@ -377,6 +384,7 @@ struct Params {
     uvec2 environment;     // its columns and rows
     float lens_radius;     // frame units; at focus_distance along the axis a point is sharp
     float focus_distance;
+    float start;           // depth at which eye rays begin, frame units: 0 but for an eye far from the scene
     uint step_budget;      // loop trips of one invocation of a resumable kernel
     uint knn;
     float radius_cap;      // largest starting radius
@@ -384,6 +392,7 @@ struct Params {
     float footprint_cap;   // starting radius in footprints of the pixel
     float scene_area;
     float inverse_paths;   // 1 / photons; 0 where nothing emits
+    float flux_unit;       // power of two, times light_power in [1, 2): with it squares of fluxes are within floats
     float alpha;
     float k;
     float beta;
@@ -412,7 +421,7 @@ static_assert(sizeof(SurfaceMaterial) == 144 && sizeof(TextureLookup) == 48 && s
 static_assert(sizeof(Photon) == 16 && sizeof(PhotonFlux) == 16);
 static_assert(sizeof(HitPosition) == 16 && sizeof(HitWeight) == 16 && sizeof(HitEmission) == 16 &&
               sizeof(HitSurface) == 16);
-static_assert(sizeof(Gathered) == 16 && sizeof(Film) == 24);
+static_assert(sizeof(Gathered) == 28 && sizeof(Film) == 24);
 static_assert(sizeof(Launch) <= 128);
 }  // namespace vkcppm::gpu
 #endif

@@ -5,7 +5,7 @@
 #endif
 #define MEMBERS_BVH_NODE X(origin) X(exponents) X(low_x) X(low_y) X(low_z) X(high_x) X(high_y) X(high_z) \
     X(unused) X(child)
-#define MEMBERS_TRIANGLE_GEOMETRY X(v0) X(error) X(e1) X(slack) X(e2) X(unused)
+#define MEMBERS_TRIANGLE_GEOMETRY X(v0) X(error) X(e1) X(slack_u) X(e2) X(slack_v)
 #define MEMBERS_TRIANGLE_SHADING X(normal) X(material)
 #define MEMBERS_SURFACE_MATERIAL \
     X(color) X(flags) X(emission) X(ior) X(metallic) X(roughness) X(transmission) X(specular) X(specular_color) \
@@ -20,10 +20,10 @@
 #define MEMBERS_HIT_WEIGHT X(weight) X(normal)
 #define MEMBERS_HIT_EMISSION X(emission) X(footprint)
 #define MEMBERS_HIT_SURFACE X(triangle) X(barycentric) X(outgoing)
-#define MEMBERS_GATHERED X(flux) X(count)
+#define MEMBERS_GATHERED X(flux) X(count) X(excess)
 #define MEMBERS_PIXEL_STATE X(radius2) X(seeded) X(count) X(total) X(batch) X(rejections) \
-    X(photons) X(seen) X(statistic)
-#define MEMBERS_AOVS X(albedo) X(normal) X(depth) X(hits)
+    X(photons) X(seen) X(statistic) X(radius2_low) X(count_low)
+#define MEMBERS_AOVS X(albedo) X(normal) X(depth) X(hits) X(albedo_low) X(normal_low) X(depth_low)
 #define MEMBERS_FILM X(sum) X(low)
 #define MEMBERS_PATH_STATE X(origin) X(path) X(direction) X(memory) X(power) X(stored) X(power0) X(begin) X(next)
 #define MEMBERS_TRACE_STATE X(origin) X(memory) X(direction) X(density) X(throughput) X(distance) X(radiance) X(done) \
@@ -31,10 +31,10 @@
 #define MEMBERS_CURSOR X(cell) X(photon)
 #define MEMBERS_GRID X(origin) X(inverse_cell) X(dims) X(cell) X(entries)
 #define MEMBERS_STATUS X(blocked) X(completed) X(capacity) X(stuck) X(invalid) X(rays) \
-    X(stored) X(unused) X(radius_histogram)
+    X(stored) X(rays_high) X(radius_histogram)
 #define MEMBERS_PARAMS \
     X(eye) X(width) X(right) X(height) X(up) X(seed) X(forward) X(pixel_radius) X(bounds_low) X(photons) \
     X(bounds_high) X(photons_per_lane) X(photon_lanes) X(photon_capacity) X(max_depth) X(light_count) X(punctual_lights) X(near_lights) X(light_power) X(environment) \
-    X(lens_radius) X(focus_distance) X(step_budget) X(knn) X(radius_cap) X(radius_floor) X(footprint_cap) X(scene_area) X(inverse_paths) X(alpha) X(k) X(beta) \
+    X(lens_radius) X(focus_distance) X(start) X(step_budget) X(knn) X(radius_cap) X(radius_floor) X(footprint_cap) X(scene_area) X(inverse_paths) X(flux_unit) X(alpha) X(k) X(beta) \
     X(cells) X(sort_lanes) X(scan_blocks) X(threshold) X(sector_edge) X(sector_centre)
 #define MEMBERS_LAUNCH X(iteration) X(round) X(last_round) X(offset) X(count)

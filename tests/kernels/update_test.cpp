@@ -132,7 +132,7 @@ TEST_P(Update, DecidesAsTheReference) {
             if (!diffuse) state.found = 0;  // and some never saw a surface
             if (i % 32 == 0) state.pixel.radius2 = 0.0f;
             pixel_states.push_back(state.pixel);
-            gathered.push_back({glm::vec3(0.0f), state.found});
+            gathered.push_back({glm::vec3(0.0f), state.found, glm::vec3(0.0f)});
             hits.push_back({glm::vec3(0.0f), diffuse ? HIT_DIFFUSE : HIT_NONE});
             for (std::size_t bin = 0; !tally.empty() && bin < state.tally.size(); ++bin)
                 tally[bin * pixels + i] = state.tally[bin];
@@ -240,7 +240,7 @@ TEST_F(FilmSum, AddsTheEstimateWithTheRadiusBeforeTheUpdate) {
         hits.push_back({glm::vec3(0.0f), i % 4 == 0 ? HIT_NONE : HIT_DIFFUSE});
         weights.push_back({color(-3.0, 0.0), 0});
         emissions.push_back({i % 3 == 0 ? color(-2.0, 3.0) : glm::vec3(0.0f), 0.0f});
-        gathered.push_back({color(-6.0, 2.0), 9});
+        gathered.push_back({color(-6.0, 2.0), 9, glm::vec3(0.0f)});
         if (i % 1000 == 7) {
             gathered.back().flux[int(i % 3)] =
                 i % 2 == 0 ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();

@@ -12,5 +12,5 @@ void main() {
     if (i >= launch.count) return;
     vec2 u = inputs[i].u;
     outputs[i] = WarpOutput(sample_cosine(u), sample_triangle(u), sample_disc(u), sample_azimuth(1.0 - 2.0 * u.x, u.y),
-                            sample_spot_cosine(inputs[i].inner, inputs[i].outer, u.x));
+                            1.0 - sample_spot_versine(1.0 - inputs[i].inner, 1.0 - inputs[i].outer, u.x));
 }

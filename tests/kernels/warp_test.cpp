@@ -133,7 +133,7 @@ TEST_F(Warp, SpotCosinesFollowTheFalloffOfKhrLightsPunctual) {
             const auto above = std::upper_bound(edges.begin(), edges.end(), double(out.spot)) - edges.begin();
             ++counts[std::clamp<std::ptrdiff_t>(above - 1, 0, std::ptrdiff_t(counts.size()) - 1)];
         }
-        expect_density(fmt::format("sample_spot_cosine between {} and {}", inner, outer),
+        expect_density(fmt::format("sample_spot_versine between {} and {}", inner, outer),
                        chi_squared(counts, probabilities), level);
     }
 }

@@ -44,6 +44,18 @@ Scene glass_box(bool inwards = false) {
     return scene;
 }
 
+TEST(Diagnosis, FindsWhatIsTooSmallBesideTheScene) {
+    const auto beside = [](double size) {
+        Scene scene = glass_box();
+        const std::uint32_t grey = test::add_diffuse(scene, glm::vec3(0.5f));
+        scene.mesh_nodes.push_back({9, "plain", std::uint32_t(scene.triangles.size())});
+        test::add_quad(scene, {0, -1, 0}, {0, 0, size}, {size, 0, 0}, grey);
+        return scene;
+    };
+    expect_told(beside(1e4), {});
+    expect_told(beside(1e6), {"nodes[7] 'cube', materials[0] 'crystal' is 3.74 m across", "too small beside the scene"});
+}
+
 TEST(Diagnosis, FindsNothingInGoodScenes) {
     expect_told(test::room(), {});
     expect_told(test::bare_room(0.5f), {});
