@@ -6,99 +6,236 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
+#include <utility>
 
-#include <glm/common.hpp>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
 namespace vkcppm {
 namespace {
 
 constexpr int bins = 16;
-constexpr float node_cost = 1.0f;      // of visiting an inner node, in triangle tests
-constexpr int max_sah_depth = 48;      // deeper, halves by count bound the depth
-constexpr std::uint32_t task_size = 4096;
+constexpr float node_cost = 1.0f;          // of visiting an inner node, in triangle tests
+constexpr int max_sah_depth = 48;          // deeper, halves by count bound the depth
+constexpr std::uint32_t task_size = 4096;  // triangles of a subtree that is worth a task of its own
 // Boxes grow by the rounding error of the slab test: a few ulp of coordinates within [-1, 1].
 constexpr float padding = 1e-6f;
 
-struct Bounds {
-    glm::vec3 low{std::numeric_limits<float>::infinity()};
-    glm::vec3 high{-std::numeric_limits<float>::infinity()};
+// x, y, z and 0 in one SIMD register, of g++ and clang alike.
+using Float4 = float __attribute__((vector_size(16)));
+using Int4 = int __attribute__((vector_size(16)));
 
-    void grow(const glm::vec3& p) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
+Float4 all(float x) { return Float4{x, x, x, x}; }
+Float4 least(Float4 a, Float4 b) { return b < a ? b : a; }
+Float4 largest(Float4 a, Float4 b) { return a < b ? b : a; }
+
+struct Bounds {
+    Float4 low;
+    Float4 high;
+
+    static Bounds nothing() {
+        const float infinity = std::numeric_limits<float>::infinity();
+        return {all(infinity), all(-infinity)};
+    }
+
+    void grow(Float4 p) {
+        low = least(low, p);
+        high = largest(high, p);
     }
     void grow(const Bounds& other) {
-        low = glm::min(low, other.low);
-        high = glm::max(high, other.high);
+        low = least(low, other.low);
+        high = largest(high, other.high);
     }
     float half_area() const {
-        const glm::vec3 d = glm::max(high - low, glm::vec3(0.0f));
-        return d.x * d.y + d.y * d.z + d.z * d.x;
+        const Float4 d = largest(high - low, all(0.0f));
+        return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
     }
 };
 
+/// A triangle as the builder moves it about.
 struct Primitive {
     Bounds bounds;
-    glm::vec3 centre{0.0f};
+    std::uint32_t index;
+
+    static Primitive of(const std::array<glm::vec3, 3>& triangle, std::uint32_t index) {
+        Primitive primitive{Bounds::nothing(), index};
+        for (const glm::vec3& corner : triangle) primitive.bounds.grow(Float4{corner.x, corner.y, corner.z, 0.0f});
+        return primitive;
+    }
+    Float4 centre() const { return all(0.5f) * (bounds.low + bounds.high); }
 };
 
 /// A node of the binary tree: a leaf has count > 0.
 struct BinaryNode {
     Bounds bounds;
-    std::uint32_t first = 0;
-    std::uint32_t count = 0;
-    std::uint32_t left = 0;
-    std::uint32_t right = 0;
+    std::uint32_t first;
+    std::uint32_t count;
+    std::uint32_t left;
+    std::uint32_t right;
 };
 
+/// Slabs of equal thickness along each axis, in which the centres of a node lie.
+class Slabs {
+public:
+    explicit Slabs(const Bounds& centres) : low_(centres.low), extent_(centres.high - centres.low) {
+        for (int axis = 0; axis < 4; ++axis) {
+            if (!(extent_[axis] > 0.0f)) extent_[axis] = 1.0f;  // all in the first one
+        }
+    }
+    /// The slab along each axis.
+    Int4 of(Float4 centre) const {
+        const Int4 slab = __builtin_convertvector(all(float(bins)) * ((centre - low_) / extent_), Int4);
+        const Int4 last = Int4{bins, bins, bins, bins} - 1;
+        return slab < last ? slab : last;
+    }
+
+private:
+    Float4 low_;
+    Float4 extent_;
+};
+
+/// The plane in front of slab `slab` along `axis`; axis -1: none, all centres lie in one slab along every axis.
+struct Split {
+    int axis = -1;
+    int slab = 0;
+    float cost = std::numeric_limits<float>::infinity();
+};
+
+/// What lies in each slab along each axis. Slabs in which nothing lies are neither set nor looked at: most nodes have few
+/// triangles.
+class Bins {
+public:
+    Bins(const Slabs& slabs, std::span<const Primitive> primitives) {
+        for (const Primitive& primitive : primitives) {
+            const Int4 slab = slabs.of(primitive.centre());
+            for (int axis = 0; axis < 3; ++axis) {
+                Axis& along = axes_[axis];
+                const int b = slab[axis];
+                if (along.used & 1u << b) {
+                    along.bounds[b].grow(primitive.bounds);
+                    ++along.count[b];
+                } else {
+                    along.bounds[b] = primitive.bounds;
+                    along.count[b] = 1;
+                    along.used |= 1u << b;
+                }
+            }
+        }
+    }
+
+    /// The box of all.
+    Bounds whole() const {
+        Bounds sum = Bounds::nothing();
+        for (std::uint32_t rest = axes_[0].used; rest != 0; rest &= rest - 1) {
+            sum.grow(axes_[0].bounds[std::countr_zero(rest)]);
+        }
+        return sum;
+    }
+
+    /// Triangles before a slab.
+    std::uint32_t before(int axis, int slab) const {
+        std::uint32_t sum = 0;
+        for (std::uint32_t rest = axes_[axis].used & ((1u << slab) - 1); rest != 0; rest &= rest - 1) {
+            sum += axes_[axis].count[std::countr_zero(rest)];
+        }
+        return sum;
+    }
+
+    /// The plane of the least cost.
+    Split best_split() const {
+        Split best;
+        for (int axis = 0; axis < 3; ++axis) {
+            const Axis& along = axes_[axis];
+            std::array<float, bins> right_cost;
+            Bounds sum = Bounds::nothing();
+            std::uint32_t count = 0;
+            for (std::uint32_t rest = along.used; rest != 0; rest &= std::bit_floor(rest) - 1) {
+                const int b = std::bit_width(rest) - 1;
+                sum.grow(along.bounds[b]);
+                count += along.count[b];
+                right_cost[b] = float(count) * sum.half_area();
+            }
+            sum = Bounds::nothing();
+            count = 0;
+            for (std::uint32_t rest = along.used; (rest & (rest - 1)) != 0;) {
+                const int b = std::countr_zero(rest);
+                rest &= rest - 1;
+                const int next = std::countr_zero(rest);
+                sum.grow(along.bounds[b]);
+                count += along.count[b];
+                const float cost = float(count) * sum.half_area() + right_cost[next];
+                if (cost < best.cost) best = {axis, next, cost};
+            }
+        }
+        return best;
+    }
+
+private:
+    struct Axis {
+        std::uint32_t used = 0;  // a bit a slab
+        std::array<std::uint32_t, bins> count;
+        std::array<Bounds, bins> bounds;
+    };
+    std::array<Axis, 3> axes_;
+};
+
+/// Builds the binary tree, subtrees in parallel. A node's triangles lie side by side in one of two buffers and go over into
+/// the other one for its children, in the same order on either side of the plane.
 class Builder {
 public:
     explicit Builder(std::span<const std::array<glm::vec3, 3>> triangles)
-        : primitives_(triangles.size()), order_(triangles.size()), nodes_(2 * triangles.size()) {
-        std::iota(order_.begin(), order_.end(), 0u);
-        tbb::parallel_for(std::size_t(0), triangles.size(), [&](std::size_t i) {
-            for (const auto& corner : triangles[i]) primitives_[i].bounds.grow(corner);
-            primitives_[i].centre = 0.5f * (primitives_[i].bounds.low + primitives_[i].bounds.high);
-        });
-        if (!triangles.empty()) build(allocate(), 0, std::uint32_t(triangles.size()), 0);
+        : order_(triangles.size()), nodes_(std::make_unique_for_overwrite<BinaryNode[]>(2 * triangles.size())) {
+        for (auto& buffer : primitives_) buffer = std::make_unique_for_overwrite<Primitive[]>(triangles.size());
+        Range all(0, std::uint32_t(triangles.size()));
+        for (std::uint32_t i = 0; i < all.last; ++i) {
+            primitives_[0][i] = Primitive::of(triangles[i], i);
+            all.centres.grow(primitives_[0][i].centre());
+        }
+        build(allocate(), all, 0);
     }
 
-    const std::vector<BinaryNode>& nodes() const { return nodes_; }
+    const BinaryNode* nodes() const { return nodes_.get(); }
     std::vector<std::uint32_t> take_order() { return std::move(order_); }
 
 private:
-    struct Split {
-        int axis = -1;
-        int bin = 0;
-        float cost = std::numeric_limits<float>::infinity();
+    /// Triangles of a node.
+    struct Range {
+        std::uint32_t first;
+        std::uint32_t last;
+        Bounds centres = Bounds::nothing();
+
+        Range(std::uint32_t first_, std::uint32_t last_) : first(first_), last(last_) {}
+        std::uint32_t count() const { return last - first; }
     };
 
     std::uint32_t allocate() { return next_.fetch_add(1, std::memory_order_relaxed); }
 
-    void build(std::uint32_t index, std::uint32_t first, std::uint32_t last, int depth) {
+    std::span<Primitive> primitives(int depth, const Range& range) {
+        return {&primitives_[depth % 2][range.first], range.count()};
+    }
+
+    void build(std::uint32_t index, const Range& range, int depth) {
+        const std::span<const Primitive> here = primitives(depth, range);
+        const Slabs slabs(range.centres);
+        const Bins table(slabs, here);
+        const Split split = depth < max_sah_depth ? table.best_split() : Split();
+        const Bounds box = table.whole();
+        const float area = box.half_area();
         BinaryNode& node = nodes_[index];
-        Bounds centres;
-        for (std::uint32_t i = first; i < last; ++i) {
-            node.bounds.grow(primitives_[order_[i]].bounds);
-            centres.grow(primitives_[order_[i]].centre);
-        }
-        const std::uint32_t count = last - first;
-        const Split split = depth < max_sah_depth && count > 1 ? best_split(first, last, centres) : Split();
-        const float area = node.bounds.half_area();
-        if (count == 1 || (count <= BVH_MAX_LEAF && float(count) * area <= split.cost + node_cost * area)) {
-            node.first = first;
-            node.count = count;
+        node = {box, range.first, 0, 0, 0};
+        if (range.count() == 1 ||
+            (range.count() <= BVH_MAX_LEAF && float(range.count()) * area <= split.cost + node_cost * area)) {
+            node.count = range.count();
+            std::ranges::transform(here, order_.begin() + range.first, &Primitive::index);
             return;
         }
-        const std::uint32_t middle = partition(first, last, centres, split);
+        const auto halves = split.axis >= 0 ? partition(range, slabs, table, split, depth) : halve(range, depth);
         node.left = allocate();
         node.right = allocate();
-        const auto left = [&, l = node.left] { build(l, first, middle, depth + 1); };
-        const auto right = [&, r = node.right] { build(r, middle, last, depth + 1); };
-        if (count > task_size) {
+        const auto left = [&] { build(node.left, halves[0], depth + 1); };
+        const auto right = [&] { build(node.right, halves[1], depth + 1); };
+        if (range.count() > task_size) {
             tbb::parallel_invoke(left, right);
         } else {
             left();
@@ -106,71 +243,42 @@ private:
         }
     }
 
-    static int bin_of(const glm::vec3& centre, const Bounds& centres, int axis) {
-        const float extent = centres.high[axis] - centres.low[axis];
-        return std::min(bins - 1, int(float(bins) * ((centre[axis] - centres.low[axis]) / extent)));
+    std::array<Range, 2> partition(const Range& range, const Slabs& slabs, const Bins& table, const Split& split,
+                                   int depth) {
+        const std::uint32_t middle = range.first + table.before(split.axis, split.slab);
+        std::array<Range, 2> halves = {Range{range.first, middle}, Range{middle, range.last}};
+        std::array<std::uint32_t, 2> at = {range.first, middle};
+        for (const Primitive& primitive : primitives(depth, range)) {
+            const Float4 centre = primitive.centre();
+            const int side = slabs.of(centre)[split.axis] >= split.slab;
+            halves[side].centres.grow(centre);
+            primitives_[(depth + 1) % 2][at[side]++] = primitive;
+        }
+        return halves;
     }
 
-    Split best_split(std::uint32_t first, std::uint32_t last, const Bounds& centres) const {
-        struct Bin {
-            Bounds bounds;
-            std::uint32_t count = 0;
-        };
-        std::array<std::array<Bin, bins>, 3> table;
-        for (int axis = 0; axis < 3; ++axis) {
-            if (!(centres.high[axis] > centres.low[axis])) continue;
-            for (std::uint32_t i = first; i < last; ++i) {
-                const Primitive& primitive = primitives_[order_[i]];
-                Bin& bin = table[axis][bin_of(primitive.centre, centres, axis)];
-                bin.bounds.grow(primitive.bounds);
-                ++bin.count;
-            }
+    /// No plane separates the centres, or the tree is too deep: halves by count along the longest axis.
+    std::array<Range, 2> halve(const Range& range, int depth) {
+        const Float4 extent = range.centres.high - range.centres.low;
+        const int axis = extent[0] >= extent[1] && extent[0] >= extent[2] ? 0 : extent[1] >= extent[2] ? 1 : 2;
+        const std::uint32_t middle = range.first + range.count() / 2;
+        std::array<Range, 2> halves = {Range{range.first, middle}, Range{middle, range.last}};
+        std::ranges::copy(primitives(depth, range), primitives(depth + 1, range).begin());
+        const std::span<Primitive> both = primitives(depth + 1, range);
+        std::nth_element(both.begin(), both.begin() + range.count() / 2, both.end(),
+                         [&](const Primitive& a, const Primitive& b) {
+                             return std::pair(float(a.centre()[axis]), a.index) <
+                                    std::pair(float(b.centre()[axis]), b.index);
+                         });
+        for (Range& half : halves) {
+            for (const Primitive& primitive : primitives(depth + 1, half)) half.centres.grow(primitive.centre());
         }
-        Split best;
-        for (int axis = 0; axis < 3; ++axis) {
-            if (!(centres.high[axis] > centres.low[axis])) continue;
-            std::array<float, bins> right_cost{};
-            Bounds bounds;
-            std::uint32_t count = 0;
-            for (int b = bins - 1; b > 0; --b) {
-                bounds.grow(table[axis][b].bounds);
-                count += table[axis][b].count;
-                right_cost[b] = count > 0 ? float(count) * bounds.half_area() : 0.0f;
-            }
-            bounds = Bounds();
-            count = 0;
-            for (int b = 1; b < bins; ++b) {
-                bounds.grow(table[axis][b - 1].bounds);
-                count += table[axis][b - 1].count;
-                if (count == 0 || count == last - first) continue;
-                const float cost = float(count) * bounds.half_area() + right_cost[b];
-                if (cost < best.cost) best = {axis, b, cost};
-            }
-        }
-        return best;
+        return halves;
     }
 
-    std::uint32_t partition(std::uint32_t first, std::uint32_t last, const Bounds& centres, const Split& split) {
-        const auto begin = order_.begin() + first, end = order_.begin() + last;
-        if (split.axis >= 0) {
-            const auto middle = std::stable_partition(begin, end, [&](std::uint32_t i) {
-                return bin_of(primitives_[i].centre, centres, split.axis) < split.bin;
-            });
-            return std::uint32_t(middle - order_.begin());
-        }
-        // No plane separates the centres (or the tree is too deep): halves by count along the longest axis.
-        const glm::vec3 extent = centres.high - centres.low;
-        const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-        const auto middle = begin + (last - first) / 2;
-        std::nth_element(begin, middle, end, [&](std::uint32_t a, std::uint32_t b) {
-            return std::pair(primitives_[a].centre[axis], a) < std::pair(primitives_[b].centre[axis], b);
-        });
-        return std::uint32_t(middle - order_.begin());
-    }
-
-    std::vector<Primitive> primitives_;
+    std::array<std::unique_ptr<Primitive[]>, 2> primitives_;
     std::vector<std::uint32_t> order_;
-    std::vector<BinaryNode> nodes_;
+    std::unique_ptr<BinaryNode[]> nodes_;
     std::atomic<std::uint32_t> next_ = 0;
 };
 
@@ -188,7 +296,7 @@ std::uint32_t quantise_up(float value, float origin, float cell) {
 
 class Collapser {
 public:
-    explicit Collapser(const std::vector<BinaryNode>& binary) : binary_(binary) {}
+    explicit Collapser(const BinaryNode* binary) : binary_(binary) {}
 
     /// Emits the four-wide node of the binary node and all below; returns the groups of children that can wait.
     std::uint32_t emit(std::uint32_t root) {
@@ -239,10 +347,10 @@ public:
 private:
     void quantise(std::uint32_t index, std::span<const std::uint32_t> children) {
         gpu::BvhNode& node = nodes[index];
-        Bounds all;
-        for (const std::uint32_t c : children) all.grow(binary_[c].bounds);
-        node.origin = all.low - padding;
-        const glm::vec3 high = all.high + padding;
+        Bounds whole = Bounds::nothing();
+        for (const std::uint32_t c : children) whole.grow(binary_[c].bounds);
+        node.origin = glm::vec3(whole.low[0], whole.low[1], whole.low[2]) - padding;
+        const glm::vec3 high = glm::vec3(whole.high[0], whole.high[1], whole.high[2]) + padding;
         std::array<std::uint32_t*, 3> low_words = {&node.low_x, &node.low_y, &node.low_z};
         std::array<std::uint32_t*, 3> high_words = {&node.high_x, &node.high_y, &node.high_z};
         for (int axis = 0; axis < 3; ++axis) {
@@ -258,7 +366,7 @@ private:
         }
     }
 
-    const std::vector<BinaryNode>& binary_;
+    const BinaryNode* binary_;
 };
 
 }  // namespace

@@ -18,7 +18,7 @@ struct Bvh {
     std::uint32_t stack = 1;              // nodes, at most, of which children can wait while one is traversed
 };
 
-/// Builds by binned surface area heuristic (Wald 2007), both cores, the same tree on any number of threads; then
+/// Builds by binned surface area heuristic (Wald 2007), all cores, the same tree on any number of threads; then
 /// collapses two levels into one and quantises boxes outwards. triangles [T][3]: corners in the scene frame, finite,
 /// coordinates within [-1, 1]. O(T log T). T may be 0: one node without children.
 Bvh build_bvh(std::span<const std::array<glm::vec3, 3>> triangles);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
 #include "render/bvh.h"
 
@@ -141,16 +142,17 @@ TEST(Bvh, AGeometricRowDoesNotBecomeAList) {
     EXPECT_LE(walk.depth, 40);
 }
 
-TEST(Bvh, BuildsTheSameTreeAgain) {
+TEST(Bvh, BuildsTheSameTreeOnAnyNumberOfThreads) {
     const Corners triangles = random_triangles(30000, 0.02f, 6);
     const Bvh first = build_bvh(triangles);
-    for (int repeat = 0; repeat < 5; ++repeat) {
-        const Bvh again = build_bvh(triangles);
-        ASSERT_EQ(again.order, first.order) << "build " << repeat;
-        ASSERT_EQ(again.stack, first.stack);
-        ASSERT_EQ(again.nodes.size(), first.nodes.size());
+    for (const int threads : {1, 2, 3, 8, 8, 8}) {
+        Bvh again;
+        tbb::task_arena(threads).execute([&] { again = build_bvh(triangles); });
+        ASSERT_EQ(again.order, first.order) << threads << " threads";
+        ASSERT_EQ(again.stack, first.stack) << threads << " threads";
+        ASSERT_EQ(again.nodes.size(), first.nodes.size()) << threads << " threads";
         ASSERT_EQ(std::memcmp(again.nodes.data(), first.nodes.data(), first.nodes.size() * sizeof(gpu::BvhNode)), 0)
-            << "build " << repeat;
+            << threads << " threads";
     }
 }
 
