@@ -9,16 +9,12 @@
 #include <random>
 #include <vector>
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "kernels/probe.h"
+#include "reference/embree.h"
 #include "reference/intersect.h"
 #include "render/flatten.h"
 #include "support/gpu.h"
@@ -101,57 +97,26 @@ bool agree(const FlatScene& flat, const Scene& scene, const gpu::RayInput& ray, 
     return true;
 }
 
+/// Embree's, of a robust scene of these triangles.
 class Embree {
 public:
-    explicit Embree(const Scene& scene) : device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_)) {
-        rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-        RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-        auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
-                                                                     RTC_FORMAT_FLOAT3, 12, scene.positions.size()));
-        for (const glm::dvec3& p : scene.positions) {
-            for (int c = 0; c < 3; ++c) *vertices++ = float(p[c]);
-        }
-        auto* corners = static_cast<std::uint32_t*>(
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, scene.triangles.size()));
-        for (const Triangle& triangle : scene.triangles)
-            corners = std::copy(triangle.vertex.begin(), triangle.vertex.end(), corners);
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometry(scene_, geometry);
-        rtcReleaseGeometry(geometry);
-        rtcCommitScene(scene_);
-    }
-    ~Embree() {
-        rtcReleaseScene(scene_);
-        rtcReleaseDevice(device_);
-    }
-    Embree(const Embree&) = delete;
-    Embree& operator=(const Embree&) = delete;
-
+    explicit Embree(const Scene& scene) : embree_(corners_of(scene), true) {}
     Answer nearest(const gpu::RayInput& ray) const {
-        RTCRayHit query{};
-        query.ray.org_x = ray.origin.x;
-        query.ray.org_y = ray.origin.y;
-        query.ray.org_z = ray.origin.z;
-        query.ray.dir_x = ray.direction.x;
-        query.ray.dir_y = ray.direction.y;
-        query.ray.dir_z = ray.direction.z;
-        query.ray.tfar = std::numeric_limits<float>::infinity();
-        query.ray.mask = 0xffffffffu;
-        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-#if RTC_VERSION_MAJOR >= 4
-        rtcIntersect1(scene_, &query);
-#else
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        rtcIntersect1(scene_, &context, &query);
-#endif
-        if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-        return {true, query.ray.tfar, query.hit.primID};
+        const auto hit = embree_.nearest(ray.origin, ray.direction);
+        return hit ? Answer{true, hit->t, hit->triangle} : Answer{};
     }
 
 private:
-    RTCDevice device_;
-    RTCScene scene_;
+    static std::vector<std::array<glm::vec3, 3>> corners_of(const Scene& scene) {
+        std::vector<std::array<glm::vec3, 3>> corners;
+        for (const Triangle& triangle : scene.triangles) {
+            const auto corner = [&](int c) { return glm::vec3(scene.positions[triangle.vertex[c]]); };
+            corners.push_back({corner(0), corner(1), corner(2)});
+        }
+        return corners;
+    }
+
+    reference::Embree embree_;
 };
 
 class Trace : public GpuTest {

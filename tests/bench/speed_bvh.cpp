@@ -1,0 +1,78 @@
+// The BVH's build on the host, and how good the tree is.
+
+#include <fmt/format.h>
+#include <tbb/task_arena.h>
+
+#include "bench/speed.h"
+#include "render/bvh.h"
+
+namespace vkcppm::bench {
+namespace {
+
+double area(const Box& box) {
+    const glm::dvec3 d = glm::dvec3(box.high) - glm::dvec3(box.low);
+    return 2.0 * (d.x * d.y + d.y * d.z + d.z * d.x);
+}
+
+/// What a random line that meets the root's box meets in the mean: nodes and triangles (surface area heuristic), by the
+/// boxes as kernels see them.
+struct Cost {
+    double nodes = 1.0;
+    double triangles = 0.0;
+};
+Cost cost_of(const Bvh& bvh) {
+    Cost cost;
+    Box root;
+    for (int c = 0; c < 4; ++c) {
+        if (bvh.nodes[0].child[c] == 0) continue;
+        const Box box = child_box(bvh.nodes[0], c);
+        root.low = c == 0 ? box.low : glm::min(root.low, box.low);
+        root.high = c == 0 ? box.high : glm::max(root.high, box.high);
+    }
+    for (const gpu::BvhNode& node : bvh.nodes) {
+        for (int c = 0; c < 4; ++c) {
+            const std::uint32_t child = node.child[c];
+            if (child == 0) continue;
+            const double probability = area(child_box(node, c)) / area(root);
+            (child & BVH_LEAF ? cost.triangles : cost.nodes) += probability * (child & BVH_LEAF ? child & 7u : 1u);
+        }
+    }
+    return cost;
+}
+
+}  // namespace
+
+Table bench_bvh(const Bench& bench) {
+    Table table{"bvh",
+                "Building the BVH, and what the scene takes in all until it can be uploaded, seconds by the clock; nodes and "
+                "triangles that a random line meets by the surface area heuristic.",
+                {"scene", "triangles", "threads", "build s", "build, CPU s", "flatten s", "nodes", "line: nodes",
+                 "line: triangles"},
+                {}};
+    for (const std::uint32_t triangles : {1000u, 50000u, 500000u}) {
+        for (const auto& [name, scene] : {std::pair("bumpy spheres", bumpy_room(triangles)),
+                                          std::pair("soup", soup(triangles))}) {
+            const FlatScene flat = flatten(scene);
+            const Cost cost = cost_of(flat.bvh);
+            std::vector<std::array<glm::vec3, 3>> corners(flat.triangles.size());
+            const auto leaf_order = corners_of(flat);
+            for (std::size_t i = 0; i < corners.size(); ++i) corners[flat.bvh.order[i]] = leaf_order[i];
+            std::vector<Seconds> build(bench.workers.size()), whole(bench.workers.size());
+            for (int run = 0; run < bench.runs; ++run) {
+                for (std::size_t w = 0; w < bench.workers.size(); ++w) {
+                    tbb::task_arena(int(bench.workers[w].threads)).execute([&] {
+                        build[w].keep(time_of([&] { build_bvh(corners); }));
+                        whole[w].keep(time_of([&] { flatten(scene); }));
+                    });
+                }
+            }
+            for (std::size_t w = 0; w < bench.workers.size(); ++w) {
+                table.rows.push_back({name, corners.size(), bench.workers[w].threads, build[w].device, build[w].cpu,
+                                      whole[w].device, flat.bvh.nodes.size(), cost.nodes, cost.triangles});
+            }
+        }
+    }
+    return table;
+}
+
+}  // namespace vkcppm::bench
