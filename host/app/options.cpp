@@ -210,6 +210,8 @@ void add_device(CLI::App& app, Device::Options& device) {
         "Vulkan device; vkcppm devices lists them (default: the fastest)");
     app.add_flag("--validate", device.validate,
                  "Load the validation layer; its messages make the exit code 70");
+    app.add_flag_callback("--no-cache", [&device] { device.cache = false; },
+                          "Neither read nor write compiled kernels in $XDG_CACHE_HOME/vkcppm");
 }
 
 Options parse_render(const Words& words) {

@@ -12,6 +12,7 @@
 #include "app/console.h"
 #include "app/interrupt.h"
 #include "app/load.h"
+#include "app/pipeline_cache.h"
 #include "app/progress.h"
 #include "app/race_page.h"
 #include "app/race_pictures.h"
@@ -185,6 +186,7 @@ void execute(const RaceOptions& options) {
     make_folder(options.folder);
     Device device(options.device);
     require_validation(options.device, device);
+    const PipelineCache cache(device, options.device.cache);
     if (options.make_reference) reference = make_race_reference(options, input, race, device);
 
     const RaceResult result = race_with_progress(scene, options, race, reference, device);

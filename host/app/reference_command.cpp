@@ -9,6 +9,7 @@
 #include "app/interrupt.h"
 #include "app/load.h"
 #include "app/outputs.h"
+#include "app/pipeline_cache.h"
 #include "app/progress.h"
 #include "app/reference_record.h"
 #include "app/validation.h"
@@ -42,6 +43,7 @@ void execute(const ReferenceOptions& options) {
     resolve_reference(options.settings, scene);  // a bad value is told before the device is asked for
     Device device(options.device);
     require_validation(options.device, device);
+    const PipelineCache cache(device, options.device.cache);
     const Reference reference = refine_with_progress(scene, options, device);
     print_warnings(reference.warnings);
     write_exr(options.output, reference_channels(reference), reference_attributes(options, scene, reference),

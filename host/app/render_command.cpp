@@ -13,6 +13,7 @@
 #include "app/interrupt.h"
 #include "app/load.h"
 #include "app/outputs.h"
+#include "app/pipeline_cache.h"
 #include "app/progress.h"
 #include "app/record.h"
 #include "app/reference.h"
@@ -181,6 +182,7 @@ void execute(const RenderOptions& options) {
         options.resume ? std::optional(read_checkpoint(*options.resume, identity, settings.size->pixels())) : std::nullopt;
     Device device(options.device);
     require_validation(options.device, device);
+    const PipelineCache cache(device, options.device.cache);
     Checkpointing checkpointing;
     std::optional<Keeper> keeper;
     if (from) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
+#include <cstring>
 #include <thread>
 
 #include <fmt/format.h>
@@ -245,6 +246,7 @@ Device::Device(const Options& options) : impl_(std::make_unique<Impl>()) {
         impl.device.emplace(*impl.physical, info);
         impl.queue.emplace(*impl.device, family, 0);
         impl.pool.emplace(*impl.device, vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, family));
+        impl.pipelines.emplace(*impl.device, vk::PipelineCacheCreateInfo());
     });
 }
 
@@ -270,6 +272,30 @@ std::uint32_t Device::busy_lanes() const {
     if (impl_->info.type != "cpu") return 1u << 17;
     // Few, so that none is idle for long while the last of its SIMD group ends; enough work groups for every core.
     return 512 * std::max(1u, std::thread::hardware_concurrency());
+}
+
+bool Device::reuse_pipelines(std::span<const std::byte> data) {
+    // Drivers should look themselves, and some crash.
+    VkPipelineCacheHeaderVersionOne header{};
+    if (data.size() < sizeof(header)) return false;
+    std::memcpy(&header, data.data(), sizeof(header));
+    const auto properties = impl_->physical->getProperties();
+    const bool ours = header.headerSize == sizeof(header) &&
+                      header.headerVersion == VK_PIPELINE_CACHE_HEADER_VERSION_ONE &&
+                      header.vendorID == properties.vendorID && header.deviceID == properties.deviceID &&
+                      std::ranges::equal(header.pipelineCacheUUID, properties.pipelineCacheUUID);
+    if (!ours) return false;
+    guarded("reading pipelines of an earlier run", [&] {
+        impl_->pipelines.emplace(*impl_->device, vk::PipelineCacheCreateInfo({}, data.size(), data.data()));
+    });
+    return true;
+}
+
+std::vector<std::byte> Device::pipelines() const {
+    std::vector<std::uint8_t> data;
+    guarded("asking for pipelines", [&] { data = impl_->pipelines->getData(); });
+    const auto bytes = std::as_bytes(std::span(data));
+    return {bytes.begin(), bytes.end()};
 }
 
 std::uint64_t Device::allocated_bytes() const { return impl_->allocated; }

@@ -1,8 +1,10 @@
 #pragma once
 // A Vulkan device with one compute queue, opaque to everything outside host/vk.
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,7 @@ public:
     struct Options {
         std::string select;       // name (substring), index or "uuid:..."; empty: the fastest kind that is usable
         bool validate = false;    // load the validation layer with synchronization checks; its errors are collected
+        bool cache = true;        // compiled kernels may be kept from run to run (app/pipeline_cache.h)
     };
     /// Throws Error(no_device) where none is usable or none matches, with the devices that there are.
     explicit Device(const Options& options);
@@ -47,6 +50,12 @@ public:
     /// Bytes of buffers alive now, and at most so far.
     std::uint64_t allocated_bytes() const;
     std::uint64_t peak_bytes() const;
+
+    /// Pipelines as pipelines() gave them in an earlier run: kernels that are among them need not be compiled. False, and
+    /// nothing else, where their header is not this device's and this driver's. Before the first kernel.
+    bool reuse_pipelines(std::span<const std::byte> data);
+    /// What the driver wants to have again: a header of 32 bytes, and behind it what it kept, which may be nothing.
+    std::vector<std::byte> pipelines() const;
 
     struct Impl;
     Impl& impl() { return *impl_; }

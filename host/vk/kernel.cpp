@@ -89,7 +89,7 @@ Kernel::Kernel(Device& device, const Bindings& bindings, std::string name, std::
         const vk::SpecializationInfo info(std::uint32_t(entries.size()), entries.data(),
                                           values.size() * sizeof(values[0]), values.data());
         const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &info);
-        impl_->pipeline.emplace(gpu, nullptr,
+        impl_->pipeline.emplace(gpu, *device.impl().pipelines,
                                 vk::ComputePipelineCreateInfo({}, stage, **bindings.impl().layout));
     });
 }

@@ -23,6 +23,7 @@ struct Device::Impl {
     std::optional<vk::raii::Device> device;
     std::optional<vk::raii::Queue> queue;
     std::optional<vk::raii::CommandPool> pool;
+    std::optional<vk::raii::PipelineCache> pipelines;
     vk::PhysicalDeviceLimits limits;
     vk::PhysicalDeviceMemoryProperties memory;
     std::uint32_t subgroup_size = 1;
