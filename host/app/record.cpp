@@ -108,6 +108,15 @@ Json report_json(const Report& report) {
                       {"setup_seconds", report.setup_seconds},
                       {"peak_memory_bytes", report.peak_memory_bytes},
                       {"device_memory_bytes", report.device_memory_bytes}};
+    if (!report.memory.empty()) {
+        json["memory"] = Json::array();
+    }
+    for (const MemoryReport& row : report.memory) {
+        json["memory"].push_back({{"of", row.of},
+                                  {"count", row.count},
+                                  {"bytes_each", double(row.bytes) / double(row.count)},
+                                  {"bytes", row.bytes}});
+    }
     json["passes"] = Json::array();
     for (const PassReport& pass : report.passes) {
         json["passes"].push_back(
@@ -146,6 +155,11 @@ std::string stats_table(const Report& report) {
                        total > 0.0 ? 100.0 * pass.device_seconds / total : 0.0);
     }
     fmt::format_to(out, "{:<20}{:>10}{:>14.4f}\n", "all", "", total);
+    fmt::format_to(out, "{:<20}{:>10}{:>14}{:>8}\n", "memory of a", "count", "bytes each", "MiB");
+    for (const MemoryReport& row : report.memory) {
+        fmt::format_to(out, "{:<20}{:>10}{:>14.1f}{:>8.1f}\n", row.of, row.count, double(row.bytes) / double(row.count),
+                       double(row.bytes) / 1048576.0);
+    }
     fmt::format_to(out, "{} emitted paths, {} stored photons, {} rays\n", report.emitted_paths, report.stored_photons,
                    report.rays);
     fmt::format_to(out, "{:.3f} s wall, {:.3f} s CPU, {:.3f} s setup, {:.1f} MiB resident, {:.1f} MiB on the device\n",

@@ -18,7 +18,8 @@ nlohmann::ordered_json settings_json(const Settings& settings);
 /// The scene's file and hash, its triangles, and what was done to it.
 nlohmann::ordered_json scene_json(const SceneOptions& options, const Scene& scene);
 
-/// What a run did: device, driver, totals and passes [{name, calls, device_seconds}].
+/// What a run did: device, driver, totals, passes [{name, calls, device_seconds}] and, of a render, memory [{of, count,
+/// bytes_each, bytes}].
 nlohmann::ordered_json report_json(const Report& report);
 
 /// EXR attributes "vkcppm.*": the members of `json`, then the scene's name and hash, what was done to it, device, driver

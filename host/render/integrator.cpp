@@ -12,6 +12,7 @@
 #include "render/estimators.h"
 #include "render/features.h"
 #include "render/kernels.h"
+#include "render/memory.h"
 #include "shared/bindings.h"
 
 namespace vkcppm {
@@ -367,6 +368,7 @@ void Integrator::fill(Report& report) const {
     report.rays = rays_;
     report.invalid = invalid_;
     report.device_memory_bytes = device_.peak_bytes();
+    report.memory = memory_of(buffers_);
     report.device = device_.info().name;
     report.driver = device_.info().driver;
 }

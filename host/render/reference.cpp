@@ -304,6 +304,7 @@ Reference make_reference(const Scene& scene, const ReferenceSettings& wanted, De
     report.device = device.info().name;
     report.driver = device.info().driver;
     report.device_memory_bytes = device.peak_bytes();
+    report.memory.clear();  // that of the caustics alone
     report.peak_memory_bytes = peak_memory();
     result.samples = samples();
     result.iterations = iterations();

@@ -14,6 +14,13 @@ struct PassReport {
     double device_seconds = 0.0;
 };
 
+/// Buffers of the device that hold an entry for each of something: pixels, photon slots, triangles, ...
+struct MemoryReport {
+    std::string of;                         // what there are `count` of
+    std::uint64_t count = 0;
+    std::uint64_t bytes = 0;                // of all of them
+};
+
 struct Report {
     std::vector<PassReport> passes;         // in the order in which an iteration runs them
     std::uint64_t iterations = 0;
@@ -25,7 +32,8 @@ struct Report {
     double cpu_seconds = 0.0;               // user + system of this process, over the same span
     double setup_seconds = 0.0;             // wall: BVH, upload, pipelines
     std::uint64_t peak_memory_bytes = 0;    // resident set of the process
-    std::uint64_t device_memory_bytes = 0;  // allocated on the device
+    std::uint64_t device_memory_bytes = 0;  // allocated on the device, at most at a time
+    std::vector<MemoryReport> memory;       // allocated on the device by a render at its end
     std::string device;                     // name
     std::string driver;                     // name and version
 };

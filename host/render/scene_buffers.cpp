@@ -66,6 +66,12 @@ void SceneBuffers::allocate(std::uint32_t binding, const std::string& name, std:
     bindings_.bind(binding, buffers_.at(binding));
 }
 
+std::map<std::uint32_t, std::uint64_t> SceneBuffers::bytes() const {
+    std::map<std::uint32_t, std::uint64_t> all;
+    for (const auto& [binding, buffer] : buffers_) all[binding] = buffer.bytes();
+    return all;
+}
+
 Specialization scene_specialization(const Bvh& bvh, std::uint32_t features) {
     return {{SPEC_WORKGROUP, workgroup},
             {SPEC_STACK, bvh.stack},

@@ -36,6 +36,9 @@ public:
     Buffer& at(std::uint32_t binding) { return buffers_.at(binding); }
     const Buffer& at(std::uint32_t binding) const { return buffers_.at(binding); }
 
+    /// Bytes of the buffers by their bindings.
+    std::map<std::uint32_t, std::uint64_t> bytes() const;
+
 private:
     Device& device_;
     Bindings& bindings_;

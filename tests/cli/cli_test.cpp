@@ -450,6 +450,19 @@ TEST_F(Cli, WritesPictureViewAndStatistics) {
         device_seconds += pass.at("device_seconds").get<double>();
     }
     EXPECT_GT(device_seconds, 0.0);
+    std::map<std::string, Json> memory;
+    std::uint64_t bytes = 0;
+    for (const Json& row : stats.at("memory")) {
+        memory[row.at("of")] = row;
+        bytes += row.at("bytes").get<std::uint64_t>();
+        EXPECT_DOUBLE_EQ(row.at("bytes_each").get<double>() * row.at("count").get<double>(), row.at("bytes")) << row;
+    }
+    EXPECT_EQ(bytes, totals.at("device_memory_bytes")) << stats.at("memory");
+    EXPECT_EQ(memory.at("pixel").at("count"), 16 * 12);
+    EXPECT_EQ(memory.at("triangle").at("count"), stats.at("scene").at("triangles"));
+    EXPECT_EQ(memory.at("triangle").at("bytes_each"), 64) << "geometry and shading";
+    EXPECT_EQ(memory.at("photon slot").at("bytes_each"), 80) << "place and flux, twice, and two keys to sort by";
+    EXPECT_EQ(memory.at("node").at("bytes_each"), 64);
 }
 
 TEST_F(Cli, AReferenceTellsItsErrorAndHowToMakeItAgain) {
