@@ -173,14 +173,18 @@ def paragraph(text):
     return textwrap.fill(" ".join(text.split()), 120, break_long_words=False, break_on_hyphens=False) + "\n\n"
 
 
+def commit():
+    """The commit of the working tree, with -dirty where it is changed."""
+    return subprocess.run(["git", "describe", "--always", "--dirty"], cwd=ROOT, check=True, stdout=subprocess.PIPE,
+                          text=True).stdout.strip()
+
+
 def conditions(options, some_race):
     """What figures hold for, a paragraph; all but the scene is the same for all races of an experiment."""
-    commit = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=ROOT, check=True, stdout=subprocess.PIPE,
-                            text=True).stdout.strip()
     data = some_race.data
     settings = data["entrants"][0]["settings"]
     noise = f" ({some_race.noise:.3g} in {pathlib.Path(data['scene']['file']).stem})" if some_race.noise else ""
-    return paragraph(f"""Commit: {commit}. Device: {data['driver']}. {data['width']}x{data['height']} pixels,
+    return paragraph(f"""Commit: {commit()}. Device: {data['driver']}. {data['width']}x{data['height']} pixels,
         {settings['photons']:,} paths an iteration, {data['iterations']:,} iterations, k_NN = {settings['knn']},
         {options.seeds} {'seed' if options.seeds == 1 else 'seeds'}. Error: {some_race.title}, against the scenes'
         references, whose own noise is taken off{noise}. Seconds are those of the passes, by the device's timestamps;
