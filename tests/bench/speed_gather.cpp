@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <random>
 
 #include <fmt/format.h>
@@ -99,18 +100,16 @@ public:
         integrator.buffer(BIND_PIXELS).upload(states_);
         for (std::uint32_t i = 0; i < photon_count; ++i) photons_.push_back({place(of.photon(uniform(random), uniform(random))), 0});
         const gpu::Params& params = integrator.params();
-        lanes_.assign(std::size_t(params.cells) + 1 + params.photon_lanes + 1, 0);
-        std::uint32_t left = photon_count;
-        for (std::uint32_t lane = 0; lane < params.photon_lanes; ++lane) {
-            const std::uint32_t here = std::min(left, params.photon_capacity);
-            lanes_[params.cells + 1 + lane] = here;
-            left -= here;
-        }
+        // One photon a light path, each in the slot of its path.
+        counters_.assign(std::size_t(params.cells) + 1 + 2 * std::size_t(params.photons) + 1, 0);
+        const auto counts = counters_.begin() + params.cells + 1;
+        std::fill(counts, counts + params.photons, 1);
+        std::iota(counts + params.photons + 1, counters_.end(), 0);
     }
 
     void iterate() {
         Integrator& integrator = render_.integrator();
-        integrator.buffer(BIND_COUNTERS).upload(lanes_);
+        integrator.buffer(BIND_COUNTERS).upload(counters_);
         integrator.buffer(BIND_PHOTONS).upload(photons_);
         Report before, after;
         integrator.fill(before);
@@ -143,7 +142,7 @@ private:
     Render render_;
     std::vector<gpu::PixelState> states_;
     std::vector<gpu::Photon> photons_;
-    std::vector<std::uint32_t> lanes_;
+    std::vector<std::uint32_t> counters_;
     double gather_ = std::numeric_limits<double>::infinity();
     double grid_ = std::numeric_limits<double>::infinity();
 };

@@ -1,6 +1,6 @@
 #version 460
-// Nearest hits of rays, launch.round of them a lane: a lane takes its next ray as soon as it is done with one, as
-// shaders/kernels/photon.comp does. launch.offset: steps that a lane may take for each of its rays, on average.
+// Nearest hits of rays. The lanes of a SIMD group share launch.round rays for each of them, and one takes the next ray as
+// soon as it is done with its own, as shaders/kernels/photon.comp does. launch.offset: steps that a lane may take in all.
 #include "include/kernel.glsl"
 #include "include/scene.glsl"
 #include "include/traverse.glsl"
@@ -10,26 +10,31 @@ layout(binding = PROBE_INPUT, scalar) readonly buffer InputBlock { RayInput rays
 layout(binding = PROBE_OUTPUT, scalar) writeonly buffer OutputBlock { RayOutput outputs[]; };
 
 void main() {
-    uint ray = invocation() * launch.round;
-    uint last = min(ray + launch.round, launch.count);
+    uint share = gl_SubgroupSize * launch.round;
+    uint next = min((gl_WorkGroupID.x * gl_NumSubgroups + gl_SubgroupID) * share, launch.count);
+    uint end = min(next + share, launch.count);
     int steps = int(launch.offset);
     Traversal traversal = no_traversal();
-    bool running = ray < last;
-    bool fresh = true;
-    while (subgroupAny(running)) {
-        if (running && fresh) {
-            traversal = begin_traversal(rays[ray].origin, rays[ray].direction);
-            fresh = false;
+    uint ray = 0u;
+    bool running = true;
+    bool wants = true;
+    while (lanes(running) > 0u) {
+        uvec4 wanting = subgroupBallot(running && wants);
+        if (running && wants) {
+            ray = next + subgroupBallotExclusiveBitCount(wanting);
+            running = ray < end;
+            wants = false;
+            if (running) traversal = begin_traversal(rays[ray].origin, rays[ray].direction);
         }
+        next += subgroupBallotBitCount(wanting);
         traverse(traversal, steps, true, running);
         uint found = found_by(traversal);
-        if (!running || (found == TRACE_UNFINISHED && steps > 0)) continue;
-        outputs[ray] = RayOutput(found, traversal.hit.t, traversal.hit.triangle, traversal.hit.barycentric, steps);
-        --steps;
-        fresh = true;
-        ++ray;
-        running = ray < last;
-        if (steps <= 0) running = false;
-        if (!running) traversal.node = NO_NODE;
+        if (running && (found != TRACE_UNFINISHED || steps <= 0)) {
+            outputs[ray] = RayOutput(found, traversal.hit.t, traversal.hit.triangle, traversal.hit.barycentric, steps);
+            running = steps > 0;
+            wants = true;
+            traversal.node = NO_NODE;
+            --steps;
+        }
     }
 }
