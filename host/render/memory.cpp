@@ -47,7 +47,9 @@ std::vector<MemoryReport> memory_of(const SceneBuffers& buffers) {
     for (const Kind& kind : kinds()) {
         if (left[kind.bindings.front()] <= empty_bytes) continue;
         MemoryReport row{kind.of, left[kind.bindings.front()] / kind.size, 0};
-        for (const std::uint32_t binding : kind.bindings) row.bytes += std::exchange(left[binding], 0);
+        for (const std::uint32_t binding : kind.bindings) {
+            if (left[binding] > empty_bytes) row.bytes += std::exchange(left[binding], 0);
+        }
         memory.push_back(row);
     }
     MemoryReport rest{"rest", 1, 0};

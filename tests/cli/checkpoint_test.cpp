@@ -84,7 +84,7 @@ TEST_F(Checkpoint, SurvivesBeingKilledAtAnyMoment) {
     Words next{"--checkpoint", "a.ckpt"};
     int hits_in_writing = 0;
     for (int kill = 0; kill < 20; ++kill) {
-        Words all = words({"--iterations", "2147483647", "--checkpoint-every", "0.001ms", "-o", "a.exr"}, size);
+        Words all = words({"--iterations", "1073741823", "--checkpoint-every", "0.001ms", "-o", "a.exr"}, size);
         all.insert(all.begin(), VKCPPM_PROGRAM);
         all.insert(all.end(), next.begin(), next.end());
         Process process(all, folder_.path());
@@ -125,7 +125,7 @@ TEST_F(Checkpoint, SurvivesBeingKilledAtAnyMoment) {
 class CheckpointSignal : public Checkpoint, public testing::WithParamInterface<int> {};
 
 TEST_P(CheckpointSignal, KeepsTheStateToo) {
-    Words all = words({"--iterations", "2147483647", "--checkpoint", "a.ckpt", "-o", "a.exr"});
+    Words all = words({"--iterations", "1073741823", "--checkpoint", "a.ckpt", "-o", "a.exr"});
     all.insert(all.begin(), VKCPPM_PROGRAM);
     Process process(all, folder_.path());
     ASSERT_TRUE(process.wait_for_message("iterations (")) << process.wait().err;

@@ -761,7 +761,7 @@ TEST_F(Cli, AnInterruptedPictureIsThatOfAsManyIterations) {
     const Words words{scene("caustic"), "--size", "16x12", "--photons", "500", "-o"};
     Words long_words = words;
     long_words.insert(long_words.begin(), VKCPPM_PROGRAM);
-    long_words.insert(long_words.end(), {"cut.exr", "--iterations", "2147483647"});
+    long_words.insert(long_words.end(), {"cut.exr", "--iterations", "1073741823"});
     test::Process process(long_words, folder_.path());
     ASSERT_TRUE(process.wait_for_message("iterations (")) << process.wait().err;
     process.send(SIGINT);

@@ -197,7 +197,7 @@ TEST_F(Race, SettingsAreRefusedWithTheEntrant) {
 TEST_F(Race, WhatDoesNotFitTheDeviceTogetherIsToldWithTheEntrant) {
     const Scene scene = test::project_scene("torus");
     RaceSettings race = race_of({"cppm", "sppm"});
-    race.entrants[1].settings.size = Extent{65536, 65536};
+    race.entrants[1].settings.size = Extent{16384, 8192};
     const auto error = test::thrown_by(
         [&] { run_race(scene, resolve_race(race, scene), black(), test::plain_device(), go_on); });
     ASSERT_TRUE(error);

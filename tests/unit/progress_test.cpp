@@ -38,9 +38,9 @@ TEST(Progress, EstimatesTheTimeLeftFromTheIterations) {
 }
 
 TEST(Progress, EndsByTimeOrByIterationsWhicheverIsSooner) {
-    EXPECT_EQ(progress_text({16, 2147483647, 30.0}, 90.0), "16 iterations (33 %), 1 min 0 s left");
+    EXPECT_EQ(progress_text({16, 1073741823, 30.0}, 90.0), "16 iterations (33 %), 1 min 0 s left");
     EXPECT_EQ(progress_text({16, 64, 3.0}, 90.0), "16/64 iterations (25 %), 9 s left");
-    EXPECT_EQ(progress_text({16, 2147483647, 95.0}, 90.0), "16 iterations (100 %), 0 s left");
+    EXPECT_EQ(progress_text({16, 1073741823, 95.0}, 90.0), "16 iterations (100 %), 0 s left");
 }
 
 TEST(Progress, TellsTheLatestErrorAndHowOldItIs) {
