@@ -33,14 +33,6 @@ constexpr std::size_t chunk_bytes = 1u << 20;                 // read at once fo
 
 static_assert(std::endian::native == std::endian::little, "files are little-endian");
 
-std::uint64_t hash_of(std::string_view bytes, std::uint64_t hash = fnv1a_start) {
-    return fnv1a_of(std::span<const char>(bytes), hash);
-}
-
-std::string hash_text(std::uint64_t hash) {
-    return fmt::format("{:016x}", hash);
-}
-
 class Writer {
 public:
     explicit Writer(std::string& out) : out_(out) {}
@@ -198,10 +190,10 @@ public:
         if (header_bytes_ > most_header_bytes) {
             fail(fmt::format("has a header of {} bytes, the limit is {}", header_bytes_, most_header_bytes));
         }
-        std::uint64_t hash = hash_of(fixed);
+        std::uint64_t hash = fnv1a_of(fixed);
         for (std::uint64_t left = rest; left > 0;) {
             const std::string chunk = read(std::min<std::uint64_t>(left, chunk_bytes));
-            hash = hash_of(chunk, hash);
+            hash = fnv1a_of(chunk, hash);
             left -= chunk.size();
         }
         std::uint64_t stored = 0;
@@ -277,7 +269,7 @@ void write_checkpoint(const fs::path& file, const Identity& identity, const Chec
     }
     bytes += header;
     bytes.append(reinterpret_cast<const char*>(checkpoint.state.data()), checkpoint.state.size());
-    writer.value(hash_of(bytes));
+    writer.value(fnv1a_of(bytes));
     write_file(file, bytes);
 }
 

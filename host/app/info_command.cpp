@@ -14,6 +14,7 @@
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/load.h"
+#include "core/fnv1a.h"
 #include "render/features.h"
 #include "render/flatten.h"
 #include "render/surface.h"
@@ -144,7 +145,7 @@ Json json_of(const Environment& environment) {
 std::string json_text(const Scene& scene, const std::vector<Feature>& features) {
     Json json;
     json["scene"] = scene.file.string();
-    json["hash"] = fmt::format("{:016x}", scene.hash);
+    json["hash"] = hash_text(scene.hash);
     json["vertices"] = scene.positions.size();
     json["triangles"] = scene.triangles.size();
     json["vertex_attributes"] = vertex_attributes(scene);
@@ -185,8 +186,8 @@ std::string json_text(const Scene& scene, const std::vector<Feature>& features) 
 }
 
 std::string plain_text(const Scene& scene, const std::vector<Feature>& features) {
-    std::string text = fmt::format("{}: {} triangles, {} vertices, hash {:016x}\n", scene.file.string(),
-                                   scene.triangles.size(), scene.positions.size(), scene.hash);
+    std::string text = fmt::format("{}: {} triangles, {} vertices, hash {}\n", scene.file.string(),
+                                   scene.triangles.size(), scene.positions.size(), hash_text(scene.hash));
     const auto out = std::back_inserter(text);
     if (const std::optional<Bounds> bounds = bounds_of(scene)) {
         fmt::format_to(out, "bounds {} to {} m\n", text_of(bounds->low), text_of(bounds->high));

@@ -20,10 +20,6 @@ namespace {
 constexpr std::size_t header_bytes = 32;  // of a cache that holds nothing
 constexpr std::string_view mark = "vkcppm pipelines\n";
 
-std::uint64_t hash_of(std::string_view bytes) {
-    return fnv1a({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
-}
-
 /// The value of an environment variable where it is an absolute path, as the XDG specification asks for.
 std::optional<fs::path> folder_in(const char* variable) {
     const char* value = std::getenv(variable);
@@ -40,12 +36,12 @@ std::optional<fs::path> pipeline_file(const DeviceInfo& info) {
         if (!folder) return std::nullopt;
         *folder /= ".cache";
     }
-    return *folder / "vkcppm" / fmt::format("{}-{:016x}.pipelines", info.uuid, hash_of(info.driver + version()));
+    return *folder / "vkcppm" / fmt::format("{}-{}.pipelines", info.uuid, hash_text(fnv1a_of(info.driver + version())));
 }
 
 std::string sealed(std::span<const std::byte> bytes) {
     const std::string_view body(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    const std::uint64_t hash = hash_of(body);
+    const std::uint64_t hash = fnv1a_of(body);
     std::string text(mark);
     text.append(reinterpret_cast<const char*>(&hash), sizeof(hash));
     return text.append(body);
@@ -56,7 +52,7 @@ std::optional<std::vector<std::byte>> unsealed(std::string_view text) {
     if (!text.starts_with(mark) || text.size() < mark.size() + sizeof(hash)) return std::nullopt;
     std::memcpy(&hash, text.data() + mark.size(), sizeof(hash));
     const std::string_view body = text.substr(mark.size() + sizeof(hash));
-    if (hash_of(body) != hash) return std::nullopt;
+    if (fnv1a_of(body) != hash) return std::nullopt;
     const auto* first = reinterpret_cast<const std::byte*>(body.data());
     return std::vector<std::byte>(first, first + body.size());
 }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/measures.h"
+#include "core/fnv1a.h"
 
 namespace vkcppm {
 namespace {
@@ -16,10 +17,6 @@ using Json = nlohmann::ordered_json;
 
 const char* name_of(ThinGlass thin_glass) {
     return thin_glass == ThinGlass::solid ? "solid" : "thin";
-}
-
-std::string hash_text(const Scene& scene) {
-    return fmt::format("{:016x}", scene.hash);
 }
 
 }  // namespace
@@ -60,7 +57,7 @@ Json settings_json(const Settings& settings) {
 
 Json scene_json(const SceneOptions& options, const Scene& scene) {
     return {{"file", scene.file.string()},
-            {"hash", hash_text(scene)},
+            {"hash", hash_text(scene.hash)},
             {"triangles", scene.triangles.size()},
             {"environment", options.environment ? Json(options.environment->string()) : Json()},
             {"thin_glass", name_of(options.thin_glass)}};
@@ -68,7 +65,7 @@ Json scene_json(const SceneOptions& options, const Scene& scene) {
 
 ExrAttributes attributes_of(Json json, const SceneOptions& options, const Scene& scene, const Report& report) {
     json["scene"] = scene.file.filename().string();
-    json["scene_hash"] = hash_text(scene);
+    json["scene_hash"] = hash_text(scene.hash);
     if (options.environment) {
         json["environment"] = options.environment->filename().string();
     }

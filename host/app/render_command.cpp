@@ -19,6 +19,7 @@
 #include "app/reference.h"
 #include "app/validation.h"
 #include "core/error.h"
+#include "core/fnv1a.h"
 #include "core/metrics.h"
 #include "io/atomic_file.h"
 #include "io/exr.h"
@@ -103,7 +104,7 @@ void print_start(const Checkpoint& from, const RenderOptions& options, const Set
 }
 
 void print_hash(std::uint32_t iteration, std::string_view pass, std::uint64_t hash) {
-    print_result(fmt::format("{} {} {:016x}\n", iteration, pass, hash));
+    print_result(fmt::format("{} {} {}\n", iteration, pass, hash_text(hash)));
 }
 
 Rendering render_with_progress(const Scene& scene, const RenderOptions& options, const Measuring* measuring,
@@ -198,7 +199,7 @@ void execute(const RenderOptions& options) {
         render_with_progress(scene, options, measuring ? &*measuring : nullptr, checkpointing, device);
     print_warnings(rendering.warnings);
     if (options.hash) {
-        print_result(fmt::format("picture {:016x}\n", hash_of(rendering.image)));
+        print_result(fmt::format("picture {}\n", hash_text(hash_of(rendering.image))));
     }
     if (options.stop_at) {
         print_stop(*options.stop_at, rendering, options.quiet);

@@ -3,7 +3,11 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
+#include <string_view>
 #include <type_traits>
+
+#include <fmt/format.h>
 
 namespace vkcppm {
 
@@ -23,5 +27,12 @@ std::uint64_t fnv1a_of(std::span<const T> values, std::uint64_t hash = fnv1a_sta
     static_assert(std::is_trivially_copyable_v<T>);
     return fnv1a({reinterpret_cast<const std::uint8_t*>(values.data()), values.size_bytes()}, hash);
 }
+
+inline std::uint64_t fnv1a_of(std::string_view bytes, std::uint64_t hash = fnv1a_start) {
+    return fnv1a_of(std::span<const char>(bytes), hash);
+}
+
+/// 16 hexadecimal digits.
+inline std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
 }  // namespace vkcppm

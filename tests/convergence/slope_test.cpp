@@ -1,10 +1,10 @@
 // A directional light on a plane: irradiance is uniform, every estimate is unbiased, and the mean squared error is
 // variance alone. It falls as n^-s with the exponent that each rule of the radius implies.
 
-#include <algorithm>
 #include <cmath>
 
 #include "render/estimators.h"
+#include "support/names.h"
 #include "support/rig.h"
 #include "support/scenes.h"
 
@@ -72,11 +72,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Expected{"ftest-fold", -0.9, "the same"},
                     Expected{"appm", -2.0 / 3.0, "R ~ n^(-1/6) where nothing curves: variance ~ n^(-2/3)"},
                     Expected{"cppm-null", -0.45, "R^2 ~ n^-0.55 at k 0.8 and beta 1.2: variance ~ n^-0.45"}),
-    [](const auto& info) {
-        std::string name = info.param.estimator;
-        std::replace(name.begin(), name.end(), '-', '_');
-        return name;
-    });
+    [](const auto& info) { return identifier(info.param.estimator); });
 
 }  // namespace
 }  // namespace vkcppm::test

@@ -1,7 +1,6 @@
 // A few small pictures as they were when somebody last looked at them. The tolerance is a relMSE far below the noise of
 // another seed (about 1e-2) and above what another driver's rounding does to single paths.
 
-#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -10,6 +9,7 @@
 #include "core/metrics.h"
 #include "io/exr.h"
 #include "io/png.h"
+#include "support/names.h"
 #include "support/rig.h"
 #include "support/scenes.h"
 
@@ -59,11 +59,7 @@ TEST_P(Golden, Picture) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Golden, testing::ValuesIn(cases()), [](const auto& info) {
-    std::string name = name_of(info.param);
-    std::replace(name.begin(), name.end(), '-', '_');
-    return name;
-});
+INSTANTIATE_TEST_SUITE_P(Scenes, Golden, testing::ValuesIn(cases()), [](const auto& info) { return identifier(name_of(info.param)); });
 
 }  // namespace
 }  // namespace vkcppm::test

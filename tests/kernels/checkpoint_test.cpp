@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "render/estimators.h"
 #include "support/gpu.h"
+#include "support/names.h"
 #include "support/rig.h"
 #include "support/shapes.h"
 #include "support/thrown.h"
@@ -77,17 +78,7 @@ TEST_P(Checkpoints, GoOnWithTheSameBits) {
     }
 }
 
-std::vector<std::string> all_estimators() {
-    std::vector<std::string> names;
-    for (const EstimatorRow& row : estimators()) names.emplace_back(row.name);
-    return names;
-}
-
-INSTANTIATE_TEST_SUITE_P(Estimators, Checkpoints, testing::ValuesIn(all_estimators()), [](const auto& info) {
-    std::string name = info.param;
-    std::replace(name.begin(), name.end(), '-', '_');
-    return name;
-});
+INSTANTIATE_TEST_SUITE_P(Estimators, Checkpoints, testing::ValuesIn(all_estimators()), [](const auto& info) { return identifier(info.param); });
 
 class CheckpointState : public GpuTest {};
 

@@ -113,19 +113,6 @@ protected:
         const bool hashed = rig.integrator.buffer(BIND_GRID).download_value<gpu::Grid>().dims.w != 0;
         ASSERT_EQ(hashed, cells > 0);
     }
-
-    /// Gathers in iteration 1 with whatever stands in the buffers, in as many rounds as it takes.
-    static void gather(Rig& rig) {
-        for (std::uint32_t round = 0; round < 100; ++round) {
-            gpu::Status status = rig.status();
-            status.blocked = 0;
-            rig.integrator.buffer(BIND_STATUS).upload_value(status);
-            rig.integrator.run_kernel("gather", rig.pixels(),
-                                      {.iteration = 1, .round = round, .last_round = 1, .offset = 0, .count = 0});
-            if (rig.status().blocked == 0) return;
-        }
-        FAIL() << "the gather does not end";
-    }
 };
 
 TEST_F(Gather, StartingRadiusIsTheDistanceOfTheKthNearestPhoton) {

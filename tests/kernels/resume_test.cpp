@@ -1,6 +1,5 @@
 // A picture does not depend on how its work is cut: small step budgets, small photon buffers, one iteration at a time.
 
-#include <algorithm>
 #include <cstring>
 #include <map>
 #include <string>
@@ -10,6 +9,7 @@
 
 #include "render/estimators.h"
 #include "support/gpu.h"
+#include "support/names.h"
 #include "support/rig.h"
 #include "support/shapes.h"
 
@@ -67,17 +67,7 @@ TEST_P(Resume, SmallStepBudgetsGiveTheSameBits) {
     }
 }
 
-std::vector<std::string> all_estimators() {
-    std::vector<std::string> names;
-    for (const EstimatorRow& row : estimators()) names.emplace_back(row.name);
-    return names;
-}
-
-INSTANTIATE_TEST_SUITE_P(Estimators, Resume, testing::ValuesIn(all_estimators()), [](const auto& info) {
-    std::string name = info.param;
-    std::replace(name.begin(), name.end(), '-', '_');
-    return name;
-});
+INSTANTIATE_TEST_SUITE_P(Estimators, Resume, testing::ValuesIn(all_estimators()), [](const auto& info) { return identifier(info.param); });
 
 class Determinism : public GpuTest {};
 

@@ -21,6 +21,7 @@
 #include "render/estimators.h"
 #include "render/kernels.h"
 #include "support/gpu.h"
+#include "support/names.h"
 #include "support/rig.h"
 #include "support/shapes.h"
 
@@ -200,11 +201,7 @@ std::vector<std::string> rows_tested_here() {
     return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(Estimators, Update, testing::ValuesIn(rows_tested_here()), [](const auto& info) {
-    std::string name = info.param;
-    std::replace(name.begin(), name.end(), '-', '_');
-    return name;
-});
+INSTANTIATE_TEST_SUITE_P(Estimators, Update, testing::ValuesIn(rows_tested_here()), [](const auto& info) { return identifier(info.param); });
 
 class FilmSum : public GpuTest {
 protected:

@@ -24,10 +24,7 @@ protected:
         settings.size = size;
         settings.photons = photons;
         settings.max_depth = 200;
-        Rig rig(scene, settings, plain_device());
-        rig.integrator.run(iterations);
-        EXPECT_EQ(rig.integrator.invalid(), 0u);
-        return rig.integrator.resolve();
+        return valid_picture(scene, settings, iterations);
     }
 
     static Environment white_sky() { return {{1, 1}, {glm::vec3(1.0f)}}; }
@@ -90,10 +87,7 @@ TEST_F(Dielectrics, RoundALight) {
         Scene scene;
         add_quad(scene, {-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, add_diffuse(scene, glm::vec3(0.2f)));
         if (with_ball) add_sphere(scene, {0, 1, 0}, 0.05, 4, add_glass(scene, 1.5f), true);
-        PunctualLight point;
-        point.intensity = glm::vec3(1.0f);
-        point.position = {0, 1, 0};
-        scene.lights.push_back(point);
+        add_point_light(scene, {0, 1, 0}, glm::vec3(1.0f));
         add_camera(scene, {0, 2.5, 2.5}, {0, 0, 0}, 0.8);
         return scene;
     };
@@ -107,10 +101,7 @@ TEST_F(Dielectrics, BetweenADeltaLightAndAFloorSeenThroughIt) {
         Scene scene;
         add_quad(scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, add_diffuse(scene, glm::vec3(0.02f)));
         if (with_glass) add_box(scene, {-1, 0.2, -1}, {1, 0.201, 1}, add_glass(scene, 1.5f), false);
-        PunctualLight point;
-        point.intensity = glm::vec3(10.0f);
-        point.position = {0.1, 3.0, 0.0};
-        scene.lights.push_back(point);
+        add_point_light(scene, {0.1, 3.0, 0.0}, glm::vec3(10.0f));
         add_camera(scene, {0, 2.0, 0.001}, {0, 0, 0}, 0.4);
         return scene;
     };

@@ -1,10 +1,10 @@
 // Every estimator on a small scene: the same bits for the same seed, however iterations are submitted; finite and
 // monotone where its rule says so, for ten thousand iterations.
 
-#include <algorithm>
 #include <cmath>
 
 #include "render/estimators.h"
+#include "support/names.h"
 #include "support/rig.h"
 #include "support/scenes.h"
 
@@ -24,11 +24,7 @@ protected:
 
 std::vector<EstimatorRow> all() { return {estimators().begin(), estimators().end()}; }
 
-std::string test_name(const testing::TestParamInfo<EstimatorRow>& info) {
-    std::string name(info.param.name);
-    std::replace(name.begin(), name.end(), '-', '_');
-    return name;
-}
+std::string test_name(const testing::TestParamInfo<EstimatorRow>& info) { return identifier(info.param.name); }
 
 TEST_P(Estimators, SameSeedSameBits) {
     const Scene scene = project_scene("caustic");

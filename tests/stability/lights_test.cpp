@@ -21,10 +21,7 @@ protected:
         Settings settings;
         settings.size = Extent{16, 16};
         settings.photons = photons;
-        Rig rig(scene, settings, plain_device());
-        rig.integrator.run(iterations);
-        EXPECT_EQ(rig.integrator.invalid(), 0u);
-        return rig.integrator.resolve();
+        return valid_picture(scene, settings, iterations);
     }
 
     /// A floor of 2 m under a square lamp of that side, which sends out the same flux whatever its side.
@@ -63,12 +60,7 @@ TEST_F(HardLights, OfNarrowCones) {
     for (const double cone : {1e-2, 1e-4, 1e-6}) {
         Scene scene;
         add_quad(scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, add_diffuse(scene, glm::vec3(0.5f)));
-        PunctualLight spot;
-        spot.kind = PunctualLight::Kind::spot;
-        spot.position = {0, 1, 0};
-        spot.direction = {0, -1, 0};
-        spot.outer_cone = cone;
-        scene.lights.push_back(spot);
+        add_spot_light(scene, {0, 1, 0}, {0, -1, 0}, cone, glm::vec3(1.0f));
         add_camera(scene, {0, 3, 0.01}, {0, 0, 0}, 0.5);
         Settings settings;
         settings.size = Extent{4, 4};

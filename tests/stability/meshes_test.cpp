@@ -34,10 +34,7 @@ protected:
         Settings settings;
         settings.size = Extent{32, 24};
         settings.photons = 4096;
-        Rig rig(scene, settings, plain_device());
-        rig.integrator.run(iterations);
-        EXPECT_EQ(rig.integrator.invalid(), 0u);
-        return rig.integrator.resolve();
+        return valid_picture(scene, settings, iterations);
     }
 
     /// A lamp over a floor that `add_floor` makes of material 0 at y = 0 over [-1, 1]^2.

@@ -23,30 +23,11 @@ protected:
         return settings;
     }
 
-    /// Gathers the photons that are there once more, with whatever stands in the buffers, in as many rounds as it takes.
-    static void gather(Rig& rig) {
-        for (std::uint32_t round = 0; round < 100; ++round) {
-            gpu::Status status = rig.status();
-            status.blocked = 0;
-            rig.integrator.buffer(BIND_STATUS).upload_value(status);
-            rig.integrator.run_kernel("gather", rig.pixels(),
-                                      {.iteration = 1, .round = round, .last_round = 1, .offset = 0, .count = 0});
-            if (rig.status().blocked == 0) return;
-        }
-        FAIL() << "the gather does not end";
-    }
-
     /// A white floor under a spot light of that cone, 1 m above it.
     static Scene floor_under_spot(double cone) {
         Scene scene;
         add_quad(scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, add_diffuse(scene, glm::vec3(1.0f)));
-        PunctualLight spot;
-        spot.kind = PunctualLight::Kind::spot;
-        spot.intensity = glm::vec3(0.1f, 1.0f / 3.0f, 0.7f);
-        spot.position = {0, 1, 0};
-        spot.direction = {0, -1, 0};
-        spot.outer_cone = cone;
-        scene.lights.push_back(spot);
+        add_spot_light(scene, {0, 1, 0}, {0, -1, 0}, cone, {0.1f, 1.0f / 3.0f, 0.7f});
         add_camera(scene, {0, 4, 0.001}, {0, 0, 0}, 0.45);
         return scene;
     }

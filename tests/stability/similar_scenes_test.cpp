@@ -24,10 +24,7 @@ protected:
         settings.size = Extent{32, 24};
         settings.photons = photons;
         settings.iterations = iterations;
-        Rig rig(scene, settings, plain_device());
-        rig.integrator.run(iterations);
-        EXPECT_EQ(rig.integrator.invalid(), 0u);
-        return rig.integrator.resolve();
+        return valid_picture(scene, settings, iterations);
     }
 
     /// Positions times `scale`, then moved. Radiance stays; what punctual lights are known by goes with the area.

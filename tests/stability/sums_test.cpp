@@ -59,6 +59,18 @@ protected:
                                       {.iteration = 0, .round = 0, .last_round = 1, .offset = 0, .count = 0});
         }
     }
+
+    /// So many photons an iteration over a disc of R^2 = first_radius2 with that count, for all launches.
+    static constexpr float first_radius2 = 1e-3f;
+    static void run_schedule(Rig& rig, std::uint32_t found, float count) {
+        set(rig, 0.0f, found);
+        gpu::PixelState state{};
+        state.radius2 = first_radius2;
+        state.seeded = 1;
+        state.count = count;
+        set_state(rig, state);
+        update(rig, launches);
+    }
 };
 
 // As a plain sum of floats: 6.2e-4.
@@ -115,32 +127,21 @@ TEST_F(Sums, TheAovs) {
 // R^2 in one float: 0.041.
 TEST_F(Sums, TheScheduleOfKnausAndZwicker) {
     Rig rig = rig_of("sppm-kz");
-    set(rig, 0.0f, 10);
-    gpu::PixelState state{};
-    state.radius2 = 1e-3f;
-    state.seeded = 1;
-    state.count = float(before);
-    set_state(rig, state);
-    update(rig, launches);
+    run_schedule(rig, 10, float(before));
     // R_n^2 = R_1^2 Gamma(n + alpha) / (Gamma(1 + alpha) Gamma(n + 1)), n iterations done.
     const double alpha = double(rig.integrator.params().alpha);
     const auto log_radius2 = [&](double n) { return -std::log(boost::math::tgamma_delta_ratio(n + 1.0 + alpha, 1.0 - alpha)); };
     const double want = -(log_radius2(before + launches) - log_radius2(before));
-    const double got = std::log(double(state_of(rig).radius2) / 1e-3f);
+    const double got = std::log(double(state_of(rig).radius2) / first_radius2);
     expect_error("shrinkage of sppm-kz about iteration 10^6", std::abs(got / want - 1.0), 1e-4);
 }
 
 // N and R^2 in one float each: 1 and 1, neither moves.
 TEST_F(Sums, TheScheduleOfHachisukaAndJensen) {
     Rig rig = rig_of("sppm");
-    set(rig, 0.0f, 1);
-    gpu::PixelState state{};
-    state.radius2 = 1e-3f;
-    state.seeded = 1;
-    state.count = 33554432.0f;
-    set_state(rig, state);
-    update(rig, launches);
-    double n = state.count, log_radius2 = 0.0;
+    constexpr float counted = 33554432.0f;
+    run_schedule(rig, 1, counted);
+    double n = counted, log_radius2 = 0.0;
     for (std::uint32_t i = 0; i < launches; ++i) {
         const auto step = reference::sppm_update(n, 1.0, double(rig.integrator.params().alpha));
         log_radius2 += std::log(step.area_factor);
@@ -148,9 +149,9 @@ TEST_F(Sums, TheScheduleOfHachisukaAndJensen) {
     }
     const gpu::PixelState after = state_of(rig);
     expect_error("photons that sppm has counted after 2^25",
-                 std::abs((double(after.count) + double(after.count_low) - state.count) / (n - state.count) - 1.0), 1e-4);
-    expect_error("shrinkage of sppm after 2^25 photons", std::abs(std::log(double(after.radius2) / 1e-3f) / log_radius2 - 1.0),
-                 1e-3);
+                 std::abs((double(after.count) + double(after.count_low) - counted) / (n - counted) - 1.0), 1e-4);
+    expect_error("shrinkage of sppm after 2^25 photons",
+                 std::abs(std::log(double(after.radius2) / first_radius2) / log_radius2 - 1.0), 1e-3);
 }
 
 // Means and squares in one float each: 0.056 and 1.

@@ -20,10 +20,7 @@ protected:
         Settings settings;
         settings.size = size;
         settings.photons = 4096;
-        Rig rig(scene, settings, plain_device());
-        rig.integrator.run(iterations);
-        EXPECT_EQ(rig.integrator.invalid(), 0u);
-        return rig.integrator.resolve();
+        return valid_picture(scene, settings, iterations);
     }
 
     /// Of magnitudes, over all channels.

@@ -17,6 +17,7 @@
 #include "render/estimators.h"
 #include "shared/estimators.h"
 #include "support/gpu.h"
+#include "support/names.h"
 #include "support/synthetic_field.h"
 
 namespace vkcppm::test {
@@ -326,16 +327,12 @@ TEST_P(OtherCells, DecideAsTheReference) {
     }
 }
 
-std::string identifier(const testing::TestParamInfo<std::string>& info) {
-    std::string name = info.param;
-    std::replace(name.begin(), name.end(), '-', '_');
-    return name;
-}
+std::string test_name(const testing::TestParamInfo<std::string>& info) { return identifier(info.param); }
 
 INSTANTIATE_TEST_SUITE_P(Estimators, EstimatorUpdate,
-                         testing::Values("cppm-lf", "cppm-gof", "cppm-fold", "cppm-null", "ftest", "ftest-fold"), identifier);
+                         testing::Values("cppm-lf", "cppm-gof", "cppm-fold", "cppm-null", "ftest", "ftest-fold"), test_name);
 INSTANTIATE_TEST_SUITE_P(Estimators, OtherCells,
-                         testing::Values("cppm-lf", "cppm-gof", "cppm-fold", "ftest", "ftest-fold"), identifier);
+                         testing::Values("cppm-lf", "cppm-gof", "cppm-fold", "ftest", "ftest-fold"), test_name);
 
 class AppmUpdate : public GpuTest {};
 

@@ -1,6 +1,5 @@
 // What each test sees and what it is blind to: one look after thirty iterations of ten photons, at the 5 % level.
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -9,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "support/gpu.h"
+#include "support/names.h"
 #include "support/synthetic_field.h"
 
 namespace vkcppm::test {
@@ -68,11 +68,7 @@ TEST_P(Power, EveryTestSeesWhatItsNullHypothesisExcludes) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Fields, Power, testing::ValuesIn(rows), [](const auto& info) {
-    std::string name = info.param.field;
-    std::replace(name.begin(), name.end(), '-', '_');
-    return name;
-});
+INSTANTIATE_TEST_SUITE_P(Fields, Power, testing::ValuesIn(rows), [](const auto& info) { return identifier(info.param.field); });
 
 // Power of one look at M = 30 and M = 100 photons by simulation on the same fields; folding opposite sectors tests the
 // hypothesis of the random flip with more power.

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <gtest/gtest.h>
+
 #include "render/flatten.h"
 #include "render/integrator.h"
 #include "render/render.h"
@@ -49,5 +51,27 @@ struct Rig {
     FlatScene flat;
     Integrator integrator;
 };
+
+/// Gathers in iteration 1 with whatever stands in the buffers, in as many rounds as it takes.
+inline void gather(Rig& rig) {
+    for (std::uint32_t round = 0; round < 100; ++round) {
+        gpu::Status status = rig.status();
+        status.blocked = 0;
+        rig.integrator.buffer(BIND_STATUS).upload_value(status);
+        rig.integrator.run_kernel("gather", rig.pixels(),
+                                  {.iteration = 1, .round = round, .last_round = 1, .offset = 0, .count = 0});
+        if (rig.status().blocked == 0) return;
+    }
+    FAIL() << "the gather does not end";
+}
+
+/// The picture after so many iterations, on the device without the validation layer. Expects that all that was added to
+/// it are numbers.
+inline Image valid_picture(const Scene& scene, const Settings& settings, std::uint32_t iterations) {
+    Rig rig(scene, settings, plain_device());
+    rig.integrator.run(iterations);
+    EXPECT_EQ(rig.integrator.invalid(), 0u);
+    return rig.integrator.resolve();
+}
 
 }  // namespace vkcppm::test

@@ -125,6 +125,24 @@ void add_sphere(Scene& scene, const glm::dvec3& centre, double radius, int level
     }
 }
 
+void add_point_light(Scene& scene, const glm::dvec3& position, const glm::vec3& intensity) {
+    PunctualLight light;
+    light.position = position;
+    light.intensity = intensity;
+    scene.lights.push_back(light);
+}
+
+void add_spot_light(Scene& scene, const glm::dvec3& position, const glm::dvec3& direction, double outer_cone,
+                    const glm::vec3& intensity) {
+    PunctualLight light;
+    light.kind = PunctualLight::Kind::spot;
+    light.position = position;
+    light.direction = direction;
+    light.outer_cone = outer_cone;
+    light.intensity = intensity;
+    scene.lights.push_back(light);
+}
+
 void add_camera(Scene& scene, const glm::dvec3& eye, const glm::dvec3& target, double yfov) {
     Camera camera;
     const glm::dvec3 back = glm::normalize(eye - target);

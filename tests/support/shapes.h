@@ -29,6 +29,13 @@ void add_box(Scene& scene, const glm::dvec3& low, const glm::dvec3& high, std::u
 /// `smooth`: shading normals of the sphere, else of the facets.
 void add_sphere(Scene& scene, const glm::dvec3& centre, double radius, int levels, std::uint32_t material, bool smooth);
 
+/// intensity: W sr^-1.
+void add_point_light(Scene& scene, const glm::dvec3& position, const glm::vec3& intensity);
+
+/// direction: unit; outer_cone: rad, from the axis, where the light ends.
+void add_spot_light(Scene& scene, const glm::dvec3& position, const glm::dvec3& direction, double outer_cone,
+                    const glm::vec3& intensity);
+
 void add_camera(Scene& scene, const glm::dvec3& eye, const glm::dvec3& target, double yfov);
 
 /// A closed room [0, 2]^3: a lamp under the ceiling, a point and a spot light, a glass sphere, a diffuse sphere with
