@@ -51,15 +51,16 @@ bool accepted_side(uint packed, vec3 normal, bool both_sides) {
     return d > 0.0 && d * d >= NORMAL_AGREEMENT * NORMAL_AGREEMENT * dot(n, n);
 }
 
-// Loops over the photons of a box from `cursor` on. `walk.first` is the photon at hand in BODY; `steps` is spent one a
-// photon and one a segment, and the loops end early when it runs out: cursor then says where to go on. Loops instead
-// of branches: software Vulkan runs every branch of a loop body for every lane, so rows are kept out of the inner one.
-#define FOR_PHOTONS(box, cursor, walk, steps, BODY)                                                   \
-    for (ivec3 cell = cursor_cell(cursor, box); cell.z <= box.high.z && steps > 0;) {                 \
+// Loops over the segments of a box from `cursor` on while `steps` last and ROOM holds: cursor then says where to go on.
+// PHOTONS goes through photons [walk.first, walk.last) of the segment at hand while it has steps, one a photon; a segment
+// costs one more. Loops instead of branches: software Vulkan runs every branch of a loop body for every lane, so rows are
+// kept out of the inner one.
+#define FOR_SEGMENTS(box, cursor, walk, steps, ROOM, PHOTONS)                                         \
+    for (ivec3 cell = cursor_cell(cursor, box); cell.z <= box.high.z && steps > 0 && (ROOM);) {       \
         walk = walk_segment(box, cell);                                                               \
         uint begin = walk.first;                                                                      \
         walk.first += cursor.photon;                                                                  \
-        for (; walk.first < walk.last && steps > 0; ++walk.first, --steps) { BODY }                   \
+        PHOTONS                                                                                       \
         cursor = Cursor(uvec3(cell), walk.first - begin);                                             \
         if (walk.first >= walk.last) {                                                                \
             cell.x = walk.last_x + 1;                                                                 \

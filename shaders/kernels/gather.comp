@@ -37,6 +37,11 @@ void glossy_hit(uint pixel, out Surface surface, out Bsdf bsdf, out vec3 outgoin
     bsdf = bsdf_of(material, index_for_path(material, STREAM_EYE, pixel, memory, weight), surface.front);
 }
 
+// Runs of at most 32 photons that wait to be weighed, those accepted marked in a word. The test of the distance takes all
+// lanes through all photons of the cells, of which it accepts a third; weighing them apart takes each lane through its own
+// alone. That is most of the work where photons are weighed by a BSDF.
+#define QUEUE 16u
+
 void main() {
     uint pixel = invocation();
     if (pixel >= pixel_count() || blocked(PASS_GATHER)) return;
@@ -72,13 +77,34 @@ void main() {
     float reach2 = search_radius2(pixel, radius2);
     CellBox box = cell_box(position, sqrt(reach2));
     Walk walk;
-    FOR_PHOTONS(box, cursor, walk, steps, {
-        uvec4 photon = texelFetch(sorted, int(walk.first));
-        vec3 place = uintBitsToFloat(photon.xyz);
-        vec3 offset = place - position;
-        float squared = dot(offset, offset);
-        if (squared < reach2 && accepted_side(photon.w, normal, both_sides) && in_segment(walk, place)) {
-            uvec4 flux = texelFetch(sorted_flux, int(walk.first));
+    uvec2 queue[QUEUE + 1u];  // first photon, marks; one more, for a store of nothing when it is full
+    while (!walked(cursor, box) && steps > 0) {
+        uint queued = 0u;
+        FOR_SEGMENTS(box, cursor, walk, steps, queued < QUEUE, {
+            uvec2 run = uvec2(walk.first, 0u);
+            for (uint bit = 1u; walk.first < walk.last && steps > 0 && bit != 0u; ++walk.first, --steps, bit <<= 1u) {
+                uvec4 photon = texelFetch(sorted, int(walk.first));
+                vec3 place = uintBitsToFloat(photon.xyz);
+                vec3 offset = place - position;
+                run.y |= dot(offset, offset) < reach2 && accepted_side(photon.w, normal, both_sides) &&
+                         in_segment(walk, place) ? bit : 0u;
+            }
+            // A store by all lanes: a branch for each would guess wrong.
+            queue[queued] = run;
+            queued += uint(run.y != 0u);
+        })
+        uvec2 run = uvec2(0u);
+        for (uint taken = 0u; run.y != 0u || taken < queued;) {
+            uvec2 next = queue[taken];
+            bool ended = run.y == 0u;
+            run = ended ? next : run;
+            taken += uint(ended);
+            int index = int(run.x) + findLSB(run.y);
+            run.y &= run.y - 1u;
+            uvec4 photon = texelFetch(sorted, index);
+            uvec4 flux = texelFetch(sorted_flux, index);
+            vec3 offset = uintBitsToFloat(photon.xyz) - position;
+            float squared = dot(offset, offset);
             vec3 power = abs(uintBitsToFloat(flux.xyz));
             vec3 towards = unpack_direction(flux.w);
             if ((FEATURES & FEATURE_SMOOTH) != 0u) {
@@ -96,9 +122,10 @@ void main() {
             add_corrected(sum.flux, sum.excess,
                           inside ? power * kernel_weight(q, (flux.y & 0x80000000u) != 0u) : vec3(0.0));
             sum.count += inside ? 1u : 0u;
-            record(pixel, Accepted(vec2(dot(offset, tangent), dot(offset, bitangent)), q, power, walk.first), inside);
+            --steps;
+            record(pixel, Accepted(vec2(dot(offset, tangent), dot(offset, bitangent)), q, power, uint(index)), inside);
         }
-    })
+    }
     flush(pixel);
     gathered[pixel] = sum;
     if (walked(cursor, box)) {

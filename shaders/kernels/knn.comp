@@ -75,13 +75,15 @@ void main() {
     while (steps > 0) {
         box = cell_box(position, kept.flux.z);
         float reach2 = kept.flux.z * kept.flux.z;
-        FOR_PHOTONS(box, cursor, walk, steps, {
-            uvec4 photon = texelFetch(sorted, int(walk.first));
-            vec3 place = uintBitsToFloat(photon.xyz);
-            vec3 offset = place - position;
-            float squared = dot(offset, offset);
-            if (squared < reach2 && accepted_side(photon.w, normal, both_sides) && in_segment(walk, place)) {
-                steps -= keep(kept, squared, pixel);
+        FOR_SEGMENTS(box, cursor, walk, steps, true, {
+            for (; walk.first < walk.last && steps > 0; ++walk.first, --steps) {
+                uvec4 photon = texelFetch(sorted, int(walk.first));
+                vec3 place = uintBitsToFloat(photon.xyz);
+                vec3 offset = place - position;
+                float squared = dot(offset, offset);
+                if (squared < reach2 && accepted_side(photon.w, normal, both_sides) && in_segment(walk, place)) {
+                    steps -= keep(kept, squared, pixel);
+                }
             }
         })
         if (!walked(cursor, box) || kept.count == params.knn || kept.flux.z >= cap) break;
