@@ -228,18 +228,32 @@ private:
     gpu::Light whole_{};
 };
 
+const gpu::SurfaceMaterial& surface_of(const FlatScene& flat, std::uint32_t triangle) {
+    return flat.materials[flat.shading[triangle].material & ~SHADING_FLAT];
+}
+
+/// Triangles that emit, in the order of the scene: the light that a random number chooses does not hang on the BVH.
+std::vector<std::uint32_t> emitters(const FlatScene& flat) {
+    std::vector<std::uint32_t> found;
+    for (std::uint32_t i = 0; i < flat.triangles.size(); ++i) {
+        const gpu::SurfaceMaterial& surface = surface_of(flat, i);
+        if (surface.emission != glm::vec3(0.0f) && !(surface.flags & SURFACE_UNLIT)) found.push_back(i);
+    }
+    std::ranges::sort(found, {}, [&](std::uint32_t i) { return flat.bvh.order[i]; });
+    return found;
+}
+
 void add_emitters(const Scene& scene, const FlatScene& flat, std::vector<WeighedLight>& lights) {
     std::vector<MeansOfImages> means(scene.materials.size());
-    for (std::size_t i = 0; i < flat.triangles.size(); ++i) {
-        const gpu::SurfaceMaterial& surface = flat.materials[flat.shading[i].material & ~SHADING_FLAT];
-        if (surface.emission == glm::vec3(0.0f) || (surface.flags & SURFACE_UNLIT)) continue;
+    for (const std::uint32_t i : emitters(flat)) {
+        const gpu::SurfaceMaterial& surface = surface_of(flat, i);
         const gpu::TriangleGeometry& triangle = flat.triangles[i];
         gpu::Light light{};
         light.kind = LIGHT_TRIANGLE;
         light.position = triangle.v0;
         light.e1 = triangle.e1;
         light.e2 = triangle.e2;
-        light.triangle = std::uint32_t(i);
+        light.triangle = i;
         light.double_sided = (surface.flags & SURFACE_DOUBLE_SIDED) != 0 ? 1 : 0;
         const double area = 0.5 * glm::length(glm::cross(glm::dvec3(triangle.e1), glm::dvec3(triangle.e2)));
         light.power = glm::vec3(glm::dvec3(surface.emission) * (pi * area * (light.double_sided ? 2.0 : 1.0)));

@@ -30,7 +30,8 @@ constexpr std::uint32_t trace_words[] = {
 constexpr std::uint32_t found_hit = 1, found_unfinished = 2;  // TRACE_* of shaders/include/traverse.glsl
 constexpr std::uint32_t step_budget = 7000;                   // below the loop limit of every driver, for eight lanes
 
-// A ray passes an edge undecidably close within this distance, frame units: rounding of the intersection.
+// A ray that is not grazing passes an edge undecidably close within this distance, frame units: rounding of the
+// intersection.
 constexpr double edge_distance = 1e-6;
 
 /// The triangles that the kernels see, in leaf order, as a scene for the reference.
@@ -92,7 +93,10 @@ bool agree(const FlatScene& flat, const Scene& scene, const gpu::RayInput& ray, 
     }
     // Only the nearer answer can be at fault: the other one missed it.
     const Answer& nearer = !b.hit || (a.hit && a.t < b.t) ? a : b;
-    if (distance_to_edges(scene, nearer.triangle, ray) > edge_distance) return false;
+    // Where on the triangle a ray meets it errs as t does.
+    if (distance_to_edges(scene, nearer.triangle, ray) > edge_distance + t_bound(flat, nearer.triangle, ray, nearer.t)) {
+        return false;
+    }
     ++undecided;
     return true;
 }
