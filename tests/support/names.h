@@ -2,6 +2,7 @@
 // Names for tests that have a parameter.
 
 #include <algorithm>
+#include <cctype>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,7 +14,7 @@ namespace vkcppm::test {
 /// The name as GoogleTest takes it: letters, digits and underscores.
 inline std::string identifier(std::string_view name) {
     std::string result(name);
-    std::replace(result.begin(), result.end(), '-', '_');
+    std::ranges::replace_if(result, [](unsigned char c) { return !std::isalnum(c); }, '_');
     return result;
 }
 
