@@ -221,11 +221,12 @@ Options parse_render(const Words& words) {
     std::optional<std::uint32_t> iterations;
     std::string text;
 
-    CLI::App app("Renders a glTF scene by progressive photon mapping on a Vulkan device.\n"
-                 "Other commands: vkcppm race, vkcppm reference, vkcppm compare, vkcppm info, vkcppm devices; each has its\n"
-                 "own --help.\n"
-                 "A scene of such a name is given as ./compare.",
-                 "vkcppm");
+    CLI::App app(
+        "Renders a glTF scene by progressive photon mapping on a Vulkan device.\n"
+        "Other commands: vkcppm race, vkcppm reference, vkcppm compare, vkcppm info, vkcppm devices; each has its\n"
+        "own --help.\n"
+        "A scene of such a name is given as ./compare.",
+        "vkcppm");
     app.footer(footer);
     app.set_version_flag("--version", "vkcppm " VKCPPM_VERSION);
     add_scene(app, options.scene);
@@ -250,13 +251,15 @@ Options parse_render(const Words& words) {
         "Stop after the first iteration after which the error is at most this, such as relmse_trimmed=0.0035;\n"
         "one of " + metric_names())
         ->needs("--reference");
-    app.add_option("--checkpoint", options.checkpoint,
-                   "Keep the state of the render in this file, which is replaced whole, and once more at the end; what\n"
-                   "was there is lost")
+    app.add_option(
+           "--checkpoint", options.checkpoint,
+           "Keep the state of the render in this file, which is replaced whole, and once more at the end; what\n"
+           "was there is lost")
         ->type_name("FILE");
-    app.add_option("--resume", options.resume,
-                   "Go on from such a file, and keep the state there unless --checkpoint names another. Scene and settings\n"
-                   "must be the same, but --iterations and --time, which count from the first start, may be larger")
+    app.add_option(
+           "--resume", options.resume,
+           "Go on from such a file, and keep the state there unless --checkpoint names another. Scene and settings\n"
+           "must be the same, but --iterations and --time, which count from the first start, may be larger")
         ->type_name("FILE");
     add(app, "--checkpoint-every", "TIME", options.checkpoint_every, parse_seconds,
         fmt::format("Rendering time between two states that are kept (default: {:g}s)", options.checkpoint_every));
@@ -267,9 +270,10 @@ Options parse_render(const Words& words) {
                  "ppm.iterations, and Z, Albedo, N of the first surfaces");
     add_device(app, options.device);
     app.add_option("--stats", options.stats, "Times and counts of the render")->type_name("FILE.json");
-    app.add_flag("--hash", options.hash,
-                 "Print a hash of what each pass of each iteration wrote, and of the picture, to find where two renders\n"
-                 "part; slower");
+    app.add_flag(
+        "--hash", options.hash,
+        "Print a hash of what each pass of each iteration wrote, and of the picture, to find where two renders\n"
+        "part; slower");
     app.add_flag("--quiet", options.quiet, "No progress, only warnings and errors");
     app.add_flag("--verbose", options.verbose, "Times of the passes at the end");
 
@@ -371,7 +375,8 @@ Options parse_race(const Words& words) {
     add(app, "--make-reference", "TIME", options.make_reference, parse_seconds,
         "Make it first, in this time, as vkcppm reference does, with a seed that does not race: DIR/reference.exr")
         ->excludes("--reference");
-    add(app, "--exposure", "EV", options.exposure, parse_exposure, "Stops by which pictures are brightened (default: 0)");
+    add(app, "--exposure", "EV", options.exposure, parse_exposure,
+        "Stops by which pictures are brightened (default: 0)");
     add_common(app, settings);
     add_parameters(app, settings);
     add_device(app, options.device);
@@ -402,9 +407,10 @@ Options parse_reference(const Words& words) {
     ReferenceSettings& settings = options.settings;
     std::optional<std::uint32_t> samples, iterations;
     std::string text;
-    CLI::App app("Makes a picture to measure others against, with its standard error a pixel: paths where they converge,\n"
-                 "photons for caustics. A scene of the name of a command is given as ./compare.",
-                 "vkcppm reference");
+    CLI::App app(
+        "Makes a picture to measure others against, with its standard error a pixel: paths where they converge,\n"
+        "photons for caustics. A scene of the name of a command is given as ./compare.",
+        "vkcppm reference");
     add_scene(app, options.scene);
     app.add_option("-o", options.output, "The picture: linear EXR of R G B, StdErr and Trust")
         ->type_name("REF.exr")
@@ -415,7 +421,8 @@ Options parse_reference(const Words& words) {
     add(app, "--samples", "N", samples, parse_whole,
         fmt::format("Paths a pixel, at most (default: {}; unbounded with --time)", settings.samples));
     add(app, "--iterations", "N", iterations, parse_whole,
-        fmt::format("Iterations of caustics, at most (default: {}; unbounded with --time)", settings.render.iterations));
+        fmt::format("Iterations of caustics, at most (default: {}; unbounded with --time)",
+                    settings.render.iterations));
     add(app, "--trust", "X", settings.trust, parse_real,
         fmt::format("Largest relative standard error of a pixel that is trusted (default: {})", settings.trust));
     add_common(app, settings.render);

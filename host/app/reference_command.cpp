@@ -37,7 +37,8 @@ Reference refine_with_progress(const Scene& scene, const ReferenceOptions& optio
 
 void execute(const ReferenceOptions& options) {
     catch_interrupts();
-    check_outputs({options.scene.file, options.scene.environment}, {{"-o", options.output}, {"--stats", options.stats}});
+    check_outputs({options.scene.file, options.scene.environment},
+                  {{"-o", options.output}, {"--stats", options.stats}});
     const Scene scene = load_scene(options.scene);
     print_warnings(scene.warnings);
     resolve_reference(options.settings, scene);  // a bad value is told before the device is asked for

@@ -64,7 +64,8 @@ ExrChannels reference_channels(const Reference& reference) {
     return channels;
 }
 
-std::string reference_json(const ReferenceOptions& options, const Scene& scene, const Reference& reference, bool stats) {
+std::string reference_json(const ReferenceOptions& options, const Scene& scene, const Reference& reference,
+                           bool stats) {
     Json json;
     json["version"] = version();
     json["scene"] = scene_json(options.scene, scene);

@@ -67,7 +67,8 @@ public:
             write_checkpoint(file_, identity_, checkpoint);
         } catch (const Error& error) {
             failure_ = error;
-            print_message(fmt::format("warning: no checkpoint after {} iterations: {}", checkpoint.report.iterations, error.what()));
+            print_message(fmt::format("warning: no checkpoint after {} iterations: {}", checkpoint.report.iterations,
+                                      error.what()));
         }
     }
 
@@ -93,9 +94,10 @@ void print_start(const Checkpoint& from, const RenderOptions& options, const Set
                                   options.resume->string()));
     }
     if (then.device != now.name || then.driver != now.driver) {
-        print_message(fmt::format("warning: {} was written on {}, {}; here is {}, {}: the picture may have other bits than "
-                                  "without the change", options.resume->string(), then.device, then.driver, now.name,
-                                  now.driver));
+        print_message(
+            fmt::format("warning: {} was written on {}, {}; here is {}, {}: the picture may have other bits than "
+                        "without the change",
+                        options.resume->string(), then.device, then.driver, now.name, now.driver));
     }
     if (then.iterations > settings.iterations) {
         print_message(fmt::format("warning: {} has {} iterations, more than --iterations {}: the picture has them all",
@@ -180,7 +182,8 @@ void execute(const RenderOptions& options) {
     const Image* reference = measuring ? &measuring->reference : nullptr;
     const Identity identity = identity_of(options.scene, scene, settings, reference);
     const std::optional<Checkpoint> from =
-        options.resume ? std::optional(read_checkpoint(*options.resume, identity, settings.size->pixels())) : std::nullopt;
+        options.resume ? std::optional(read_checkpoint(*options.resume, identity, settings.size->pixels()))
+                       : std::nullopt;
     Device device(options.device);
     require_validation(options.device, device);
     const PipelineCache cache(device, options.device.cache);

@@ -87,7 +87,8 @@ struct Share {
     std::uint32_t left;
     float cost;
 
-    Share(const BinaryNode& a, const BinaryNode& b, std::uint32_t slots) : left(1), cost(a.cost[0] + b.cost[slots - 2]) {
+    Share(const BinaryNode& a, const BinaryNode& b, std::uint32_t slots)
+        : left(1), cost(a.cost[0] + b.cost[slots - 2]) {
         for (std::uint32_t k = 2; k < slots; ++k) {
             const float other = a.cost[k - 1] + b.cost[slots - k - 1];
             if (other < cost) {

@@ -29,7 +29,7 @@ struct FlatScene {
     std::vector<std::uint32_t> texels;             // of all images, a word each
     std::vector<gpu::Light> lights;                // alias table; empty where nothing emits
     std::uint32_t punctual_lights = 0;             // the first so many of them
-    double light_power = 0.0;                      // of all, mean channel, W (frame-scaled): about, where lights have textures
+    double light_power = 0.0;  // of all, mean channel, W (frame-scaled): about, where lights have textures
     Extent environment_size;
     std::vector<glm::vec4> environment;            // [pixels] radiance, keep of its alias table
     std::vector<std::uint32_t> environment_alias;  // [pixels]

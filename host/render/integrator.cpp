@@ -47,7 +47,10 @@ void set_test(gpu::Params& params, const EstimatorRow& estimator, const Settings
 
 Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings,
                        std::uint32_t group)
-    : device_(device), bindings_(device), commands_(device, bindings_, timed_launches), buffers_(device, bindings_, scene),
+    : device_(device),
+      bindings_(device),
+      commands_(device, bindings_, timed_launches),
+      buffers_(device, bindings_, scene),
       group_(group) {
     const EstimatorRow& estimator = find_estimator(settings.estimator);
     const std::uint32_t features = bits_of(scene.features) | bits_of(features_of(settings));
@@ -168,7 +171,8 @@ void Integrator::iterate(std::uint32_t i, Pass from, Pass to, std::uint32_t firs
     if (runs(Pass::knn)) launch_rounds("knn", pixels_, Pass::knn, i, round(Pass::knn));
     if (runs(Pass::gather)) launch_rounds("gather", pixels_, Pass::gather, i, round(Pass::gather));
     if (!runs(Pass::update)) return;
-    launch("update", pixels_, {.iteration = i, .round = 0, .last_round = 1, .offset = plans_grid(i + 1) ? 1u : 0u, .count = 0});
+    launch("update", pixels_,
+           {.iteration = i, .round = 0, .last_round = 1, .offset = plans_grid(i + 1) ? 1u : 0u, .count = 0});
     launch("advance", 1, {.iteration = i, .round = 0, .last_round = 1, .offset = 0, .count = 0});
 }
 
@@ -209,7 +213,8 @@ void Integrator::launch_rounds(const std::string& kernel, std::uint64_t invocati
                                std::uint32_t first_round) {
     for (std::uint32_t r = 0; r < rounds_.at(pass); ++r) {
         const std::uint32_t last = r + 1 == rounds_.at(pass) ? 1 : 0;
-        launch(kernel, invocations, {.iteration = i, .round = first_round + r, .last_round = last, .offset = 0, .count = 0});
+        launch(kernel, invocations,
+               {.iteration = i, .round = first_round + r, .last_round = last, .offset = 0, .count = 0});
     }
 }
 
@@ -265,8 +270,9 @@ bool Integrator::unblock(Pass to) {
         completed_ = status.completed;
         const std::uint32_t blocked = status.blocked;
         if (status.stuck > 0) {
-            throw Error(ExitCode::internal, fmt::format("{} rays need more than {} steps of the BVH each, the limit of device '{}'",
-                                                        status.stuck, params_.step_budget, device_.info().name));
+            throw Error(ExitCode::internal,
+                        fmt::format("{} rays need more than {} steps of the BVH each, the limit of device '{}'",
+                                    status.stuck, params_.step_budget, device_.info().name));
         }
         status.rays = status.rays_high = status.stored = status.invalid = status.blocked = 0;
         buffer(BIND_STATUS).upload_value(status);

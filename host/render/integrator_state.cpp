@@ -42,7 +42,9 @@ private:
 
 std::vector<std::byte> Integrator::save() const {
     std::vector<std::byte> state;
-    const auto append = [&](std::span<const std::byte> bytes) { state.insert(state.end(), bytes.begin(), bytes.end()); };
+    const auto append = [&](std::span<const std::byte> bytes) {
+        state.insert(state.end(), bytes.begin(), bytes.end());
+    };
     const gpu::Status status = buffers_.at(BIND_STATUS).download_value<gpu::Status>();
     append(std::as_bytes(std::span(status.radius_histogram)));
     for (const std::uint32_t binding : carried) {
@@ -70,9 +72,10 @@ void Integrator::restore(const Report& report, std::span<const std::byte> state)
     for (const std::uint32_t binding : carried) buffer(binding).upload(take(buffer(binding).bytes()));
     const auto grid = buffer(BIND_GRID).download_value<gpu::Grid>();
     if (!fits(grid, params_)) {
-        throw Error(ExitCode::bad_scene, fmt::format("the checkpoint's grid of {} x {} x {} cells in {} entries is not one "
-                                                     "of this render, which has room for {}",
-                                                     grid.dims.x, grid.dims.y, grid.dims.z, grid.entries, params_.cells));
+        throw Error(ExitCode::bad_scene,
+                    fmt::format("the checkpoint's grid of {} x {} x {} cells in {} entries is not one "
+                                "of this render, which has room for {}",
+                                grid.dims.x, grid.dims.y, grid.dims.z, grid.entries, params_.cells));
     }
     status.completed = std::uint32_t(report.iterations);
     buffer(BIND_STATUS).upload_value(status);

@@ -19,14 +19,17 @@ struct Kind {
 
 const std::vector<Kind>& kinds() {
     static const std::vector<Kind> all = {
-        {"pixel", sizeof(gpu::PixelState),
-         {BIND_PIXELS, BIND_HIT_POSITION, BIND_HIT_WEIGHT, BIND_HIT_EMISSION, BIND_HIT_SURFACE, BIND_GATHERED, BIND_TALLY,
-          BIND_MOMENTS, BIND_FILM, BIND_CURSOR, BIND_NEAREST, BIND_IMAGE, BIND_AOVS}},
-        {"photon slot", sizeof(gpu::Photon),
+        {"pixel",
+         sizeof(gpu::PixelState),
+         {BIND_PIXELS, BIND_HIT_POSITION, BIND_HIT_WEIGHT, BIND_HIT_EMISSION, BIND_HIT_SURFACE, BIND_GATHERED,
+          BIND_TALLY, BIND_MOMENTS, BIND_FILM, BIND_CURSOR, BIND_NEAREST, BIND_IMAGE, BIND_AOVS}},
+        {"photon slot",
+         sizeof(gpu::Photon),
          {BIND_PHOTONS, BIND_PHOTON_FLUX, BIND_SORTED, BIND_SORTED_FLUX, BIND_PAIRS_A, BIND_PAIRS_B}},
         {"lane of light paths", sizeof(gpu::PathState), {BIND_PATHS}},
         {"counter of the grid", sizeof(std::uint32_t), {BIND_COUNTERS}},
-        {"triangle", sizeof(gpu::TriangleGeometry),
+        {"triangle",
+         sizeof(gpu::TriangleGeometry),
          {BIND_TRIANGLES, BIND_SHADING, BIND_TEXCOORDS, BIND_VERTEX_COLORS, BIND_TANGENTS}},
         {"node", sizeof(gpu::BvhNode), {BIND_NODES}},
         {"light", sizeof(gpu::Light), {BIND_LIGHTS}},

@@ -180,8 +180,10 @@ private:
 double around(const std::vector<double>& values, Extent extent, std::size_t pixel) {
     const auto x = std::int64_t(pixel % extent.width), y = std::int64_t(pixel / extent.width);
     double sum = 0.0, count = 0.0;
-    for (std::int64_t v = std::max<std::int64_t>(y - 1, 0); v <= std::min<std::int64_t>(y + 1, extent.height - 1); ++v) {
-        for (std::int64_t u = std::max<std::int64_t>(x - 1, 0); u <= std::min<std::int64_t>(x + 1, extent.width - 1); ++u) {
+    for (std::int64_t v = std::max<std::int64_t>(y - 1, 0); v <= std::min<std::int64_t>(y + 1, extent.height - 1);
+         ++v) {
+        for (std::int64_t u = std::max<std::int64_t>(x - 1, 0); u <= std::min<std::int64_t>(x + 1, extent.width - 1);
+             ++u) {
             sum += values[std::size_t(v) * extent.width + std::size_t(u)];
             ++count;
         }

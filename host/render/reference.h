@@ -32,9 +32,9 @@ struct ReferenceSettings {
 struct Reference {
     Image mean;
     Image standard_error;          // of the mean, a pixel and channel: from independent batches
-    std::vector<float> trusted;    // [P] 1 or 0: the root mean square of the relative standard error, over the pixel and
-                                   // its eight neighbours, is at most ReferenceSettings::trust. Relative: se^2 over
-                                   // r^2 + 0.01, as relMSE weighs it, the mean over channels.
+    std::vector<float> trusted;  // [P] 1 or 0: the root mean square of the relative standard error, over the pixel and
+                                 // its eight neighbours, is at most ReferenceSettings::trust. Relative: se^2 over
+                                 // r^2 + 0.01, as relMSE weighs it, the mean over channels.
     ReferenceSettings settings;    // as resolved
     std::uint32_t samples = 0;     // paths a pixel, done
     std::uint32_t iterations = 0;  // of caustics, done

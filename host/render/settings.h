@@ -30,8 +30,8 @@ struct Settings {
     double significance = 0.05;             // of every test, 0 < x < 1
     std::uint32_t rings = 2;                // n_a
     std::uint32_t sectors = 6;              // n_s
-    std::optional<double> caustics;         // caustics alone, for a reference (render/reference.h): the starting radius in
-                                            // footprints of the pixel, a quarter of it at a photon's first rough surface
+    std::optional<double> caustics;  // caustics alone, for a reference (render/reference.h): the starting radius in
+                                     // footprints of the pixel, a quarter of it at a photon's first rough surface
     bool aovs = false;                      // also depth, albedo, normal and the state of every pixel
 };
 

@@ -59,15 +59,16 @@ void check_heap(const Buffer::Impl& buffer) {
     const Device::Impl& device = buffer.device->impl();
     if (buffer.bytes <= device.info.memory_bytes - std::min(device.info.memory_bytes, device.allocated)) return;
     throw Error(ExitCode::out_of_device_memory,
-                fmt::format("buffer '{}' needs {} bytes beside {} in use, the memory of the device '{}' has {}", buffer.name,
-                            buffer.bytes, device.allocated, device.info.name, device.info.memory_bytes));
+                fmt::format("buffer '{}' needs {} bytes beside {} in use, the memory of the device '{}' has {}",
+                            buffer.name, buffer.bytes, device.allocated, device.info.name, device.info.memory_bytes));
 }
 
 /// Device memory for `buffer`: device-local and mappable where there is such a type, else device-local.
 vk::raii::DeviceMemory allocate(Device::Impl& device, const vk::raii::Buffer& buffer, vk::MemoryPropertyFlags wanted,
                                 bool& mappable) {
     const auto needed = buffer.getMemoryRequirements();
-    auto type = memory_type(device.memory, needed.memoryTypeBits, wanted | Memory::eHostVisible | Memory::eHostCoherent);
+    auto type =
+        memory_type(device.memory, needed.memoryTypeBits, wanted | Memory::eHostVisible | Memory::eHostCoherent);
     mappable = type.has_value();
     if (!type) type = memory_type(device.memory, needed.memoryTypeBits, wanted);
     if (!type) throw Error(ExitCode::internal, "the device has no memory type for buffers");
@@ -79,8 +80,9 @@ template <typename Before, typename Copy, typename After>
 void through_staging(Device& device, std::uint64_t bytes, Before before, Copy copy, After after) {
     guarded("copying through a staging buffer", [&] {
         auto& impl = device.impl();
-        vk::raii::Buffer staging(*impl.device, vk::BufferCreateInfo({}, bytes, vk::BufferUsageFlagBits::eTransferSrc |
-                                                                                   vk::BufferUsageFlagBits::eTransferDst));
+        vk::raii::Buffer staging(*impl.device, vk::BufferCreateInfo({}, bytes,
+                                                                    vk::BufferUsageFlagBits::eTransferSrc |
+                                                                        vk::BufferUsageFlagBits::eTransferDst));
         bool mappable = false;
         vk::raii::DeviceMemory memory = allocate(impl, staging, {}, mappable);
         staging.bindMemory(*memory, 0);
@@ -114,7 +116,8 @@ Buffer::Buffer(Device& device, std::string name, std::uint64_t bytes, Kind kind)
                 impl.buffer->bindMemory(**impl.memory, 0);
                 if (mappable) impl.mapped = static_cast<std::byte*>(impl.memory->mapMemory(0, VK_WHOLE_SIZE));
                 if (const auto format = texel_format(kind)) {
-                    impl.view.emplace(*gpu.device, vk::BufferViewCreateInfo({}, **impl.buffer, *format, 0, VK_WHOLE_SIZE));
+                    impl.view.emplace(*gpu.device,
+                                      vk::BufferViewCreateInfo({}, **impl.buffer, *format, 0, VK_WHOLE_SIZE));
                 }
             });
     if (impl.mapped) {

@@ -211,16 +211,18 @@ Device::Device(const Options& options) : impl_(std::make_unique<Impl>()) {
     auto devices = enumerate(*impl.instance);
     std::vector<std::string> names;
     for (const auto& [physical, info] : devices) {
-        names.push_back(info.unusable.empty() ? fmt::format("{} '{}'", info.index, info.name)
-                                              : fmt::format("{} '{}' (unusable: {})", info.index, info.name, info.unusable));
+        names.push_back(info.unusable.empty()
+                            ? fmt::format("{} '{}'", info.index, info.name)
+                            : fmt::format("{} '{}' (unusable: {})", info.index, info.name, info.unusable));
     }
     std::erase_if(devices, [&](const auto& device) {
         return !device.second.unusable.empty() || (!options.select.empty() && !matches(device.second, options.select));
     });
     if (devices.empty()) {
         const std::string wanted = options.select.empty() ? "" : fmt::format(" that matches '{}'", options.select);
-        throw Error(ExitCode::no_device, fmt::format("no usable Vulkan device{}; there are: {}", wanted,
-                                                     names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+        throw Error(ExitCode::no_device,
+                    fmt::format("no usable Vulkan device{}; there are: {}", wanted,
+                                names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
     }
     auto best = std::min_element(devices.begin(), devices.end(), [](const auto& a, const auto& b) {
         return preference(a.second) < preference(b.second);
@@ -228,8 +230,9 @@ Device::Device(const Options& options) : impl_(std::make_unique<Impl>()) {
     impl.physical.emplace(std::move(best->first));
     impl.info = best->second;
 
-    const auto chain = impl.physical->getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupProperties,
-                                                     vk::PhysicalDeviceDriverProperties>();
+    const auto chain =
+        impl.physical->getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupProperties,
+                                      vk::PhysicalDeviceDriverProperties>();
     impl.limits = chain.get<vk::PhysicalDeviceProperties2>().properties.limits;
     impl.subgroup_size = chain.get<vk::PhysicalDeviceSubgroupProperties>().subgroupSize;
     impl.loop_limit = chain.get<vk::PhysicalDeviceDriverProperties>().driverID == vk::DriverId::eMesaLlvmpipe;
@@ -245,7 +248,8 @@ Device::Device(const Options& options) : impl_(std::make_unique<Impl>()) {
         info.pNext = &features;
         impl.device.emplace(*impl.physical, info);
         impl.queue.emplace(*impl.device, family, 0);
-        impl.pool.emplace(*impl.device, vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, family));
+        impl.pool.emplace(*impl.device,
+                          vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, family));
         impl.pipelines.emplace(*impl.device, vk::PipelineCacheCreateInfo());
     });
 }

@@ -43,7 +43,8 @@ Bindings::Bindings(Device& device) : impl_(std::make_unique<Impl>()) {
             vk::DescriptorPoolSize(vk::DescriptorType::eUniformBuffer, BIND_FIRST_TEXEL),
             vk::DescriptorPoolSize(vk::DescriptorType::eUniformTexelBuffer, BIND_FIRST_STORAGE - BIND_FIRST_TEXEL),
             vk::DescriptorPoolSize(vk::DescriptorType::eStorageBuffer, BIND_COUNT - BIND_FIRST_STORAGE)};
-        impl_->pool.emplace(gpu, vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes));
+        impl_->pool.emplace(
+            gpu, vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes));
         vk::raii::DescriptorSets sets(gpu, vk::DescriptorSetAllocateInfo(**impl_->pool, set_layout));
         impl_->set.emplace(std::move(sets.front()));
     });
@@ -133,7 +134,8 @@ void Commands::begin() {
         impl_->commands->begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
         impl_->commands->resetQueryPool(**impl_->queries, 0, 2 * impl_->capacity);
         const vk::DescriptorSet set = **impl_->bindings->impl().set;
-        impl_->commands->bindDescriptorSets(vk::PipelineBindPoint::eCompute, **impl_->bindings->impl().layout, 0, set, {});
+        impl_->commands->bindDescriptorSets(vk::PipelineBindPoint::eCompute, **impl_->bindings->impl().layout, 0, set,
+                                            {});
     });
 }
 

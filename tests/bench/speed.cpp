@@ -63,7 +63,8 @@ int main(int argc, char** argv) {
     app.add_option("--threads", threads, "Numbers of threads of lavapipe and the host (default: 1,2)")->delimiter(',');
     app.add_option("--runs", bench.runs, "Runs of each, of which the least counts (default: 3)");
     app.add_option("--only", only, "Subjects: rays, bvh, gather, iterations, growth (default: all)")->delimiter(',');
-    app.add_option("--scene", bench.scenes, "Further scenes for `iterations`, at 256x256 and 512x512 with 65,536 paths");
+    app.add_option("--scene", bench.scenes,
+                   "Further scenes for `iterations`, at 256x256 and 512x512 with 65,536 paths");
     app.add_option("--json", json_file, "The figures once more");
     CLI11_PARSE(app, argc, argv);
 

@@ -57,12 +57,13 @@ std::vector<std::array<glm::vec3, 3>> in_order(const FlatScene& flat) {
 }  // namespace
 
 Table bench_bvh(const Bench& bench) {
-    Table table{"bvh",
-                "Building the BVH, and what the scene takes in all until it can be uploaded, seconds by the clock; nodes and "
-                "triangles that a random line meets by the surface area heuristic.",
-                {"scene", "triangles", "threads", "build s", "build, CPU s", "flatten s", "nodes", "line: nodes",
-                 "line: triangles"},
-                {}};
+    Table table{
+        "bvh",
+        "Building the BVH, and what the scene takes in all until it can be uploaded, seconds by the clock; nodes and "
+        "triangles that a random line meets by the surface area heuristic.",
+        {"scene", "triangles", "threads", "build s", "build, CPU s", "flatten s", "nodes", "line: nodes",
+         "line: triangles"},
+        {}};
     for (const std::uint32_t triangles : {1000u, 50000u, 500000u}) {
         for (const auto& [name, scene] : {std::pair("bumpy spheres", bumpy_room(triangles)),
                                           std::pair("soup", soup(triangles))}) {

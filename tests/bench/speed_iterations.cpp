@@ -26,7 +26,8 @@ std::string size_text(Extent size) { return fmt::format("{}x{}", size.width, siz
 
 Table bench_iterations(const Bench& bench) {
     Table table{"iterations",
-                "Iterations of cppm on one thread: device ms a pass, CPU seconds an iteration; light paths and stored photons a "
+                "Iterations of cppm on one thread: device ms a pass, CPU seconds an iteration; light paths and stored "
+                "photons a "
                 "second of the photon pass, rays a second of eye and photon pass, in millions.",
                 {"scene", "pixels", "paths", "eye", "photon", "grid", "knn", "gather", "update", "all", "CPU s",
                  "Mpaths/s", "Mphotons/s", "Mrays/s"},
@@ -38,8 +39,8 @@ Table bench_iterations(const Bench& bench) {
         std::uint32_t photons;
     };
     std::vector<Case> cases;
-    for (const char* name : {"caustic", "box", "clocks", "conference", "cornell", "diamond", "dining", "glass", "sibenik",
-                             "sponza", "torus", "water"}) {
+    for (const char* name : {"caustic", "box", "clocks", "conference", "cornell", "diamond", "dining", "glass",
+                             "sibenik", "sponza", "torus", "water"}) {
         cases.push_back({name, test::project_scene(name), {128, 128}, 16384});
     }
     for (const auto& file : bench.scenes) {
@@ -67,12 +68,13 @@ Table bench_iterations(const Bench& bench) {
 }
 
 Table bench_growth(const Bench& bench) {
-    Table table{"growth",
-                "Iterations of cppm as one number grows: device ms, CPU ms; `step`: how many times longer than the row before, "
-                "over how many times more there are, 1 where growth is linear; `gain`: by the second number of threads, by "
-                "the clock.",
-                {"grows", "number", "others"},
-                {}};
+    Table table{
+        "growth",
+        "Iterations of cppm as one number grows: device ms, CPU ms; `step`: how many times longer than the row before, "
+        "over how many times more there are, 1 where growth is linear; `gain`: by the second number of threads, by "
+        "the clock.",
+        {"grows", "number", "others"},
+        {}};
     for (const Worker& worker : bench.workers) {
         const std::string threads = worker.threads == 1 ? "1 thread" : fmt::format("{} threads", worker.threads);
         for (const char* what : {"ms", "CPU ms", "step"}) table.columns.push_back(fmt::format("{}, {}", what, threads));

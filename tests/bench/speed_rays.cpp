@@ -60,7 +60,8 @@ Rays diffuse_rays(const Rays& first, const reference::Embree& embree, const Flat
         const gpu::TriangleGeometry& triangle = flat.triangles[hit->triangle];
         glm::vec3 normal = glm::normalize(glm::cross(triangle.e1, triangle.e2));
         if (glm::dot(normal, ray.direction) > 0.0f) normal = -normal;
-        const float cosine = 1.0f - 2.0f * uniform(random), azimuth = 2.0f * std::numbers::pi_v<float> * uniform(random);
+        const float cosine = 1.0f - 2.0f * uniform(random),
+                    azimuth = 2.0f * std::numbers::pi_v<float> * uniform(random);
         const float sine = std::sqrt(1.0f - cosine * cosine);
         const glm::vec3 on_sphere(sine * std::cos(azimuth), sine * std::sin(azimuth), cosine);
         const glm::vec3 place = ray.origin + hit->t * ray.direction;
@@ -158,14 +159,16 @@ double differing(const reference::Embree& embree, const Rays& rays, const std::v
 }  // namespace
 
 Table bench_rays(const Bench& bench) {
-    Table table{"rays",
-                fmt::format("Nearest hits of {} rays in a room of bumpy spheres, beside Embree's rtcIntersect1 (default flags, "
-                            "not robust). Millions of rays a CPU second; `eye`: one ray a lane, `photon`: lanes take the next ray. In units of "
-                            "Embree's: by CPU seconds, and by the clock.",
-                            side * side),
-                {"triangles", "rays", "threads", "eye", "photon", "Embree", "eye / Embree", "photon / Embree",
-                 "eye, clock", "photon, clock", "differ"},
-                {}};
+    Table table{
+        "rays",
+        fmt::format("Nearest hits of {} rays in a room of bumpy spheres, beside Embree's rtcIntersect1 (default flags, "
+                    "not robust). Millions of rays a CPU second; `eye`: one ray a lane, `photon`: lanes take the next "
+                    "ray. In units of "
+                    "Embree's: by CPU seconds, and by the clock.",
+                    side * side),
+        {"triangles", "rays", "threads", "eye", "photon", "Embree", "eye / Embree", "photon / Embree", "eye, clock",
+         "photon, clock", "differ"},
+        {}};
     for (const std::uint32_t triangles : {1000u, 50000u, 500000u}) {
         const Scene scene = bumpy_room(triangles);
         const FlatScene flat = flatten(scene);

@@ -20,8 +20,11 @@ using test::add_triangle;
 void add_bumpy_sphere(Scene& scene, const glm::dvec3& centre, double radius, int steps, std::uint32_t material) {
     const auto at = [&](int i, int j) {
         const double theta = pi * i / steps, phi = 2.0 * pi * j / steps;
-        const double bumps = 1.0 + 0.2 * std::sin(5.0 * theta) * std::cos(7.0 * phi) + 0.05 * std::sin(31.0 * theta) * std::sin(23.0 * phi);
-        return centre + radius * bumps * glm::dvec3(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi));
+        const double bumps = 1.0 + 0.2 * std::sin(5.0 * theta) * std::cos(7.0 * phi) +
+                             0.05 * std::sin(31.0 * theta) * std::sin(23.0 * phi);
+        return centre +
+               radius * bumps *
+                   glm::dvec3(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi));
     };
     for (int i = 0; i < steps; ++i) {
         for (int j = 0; j < steps; ++j) {

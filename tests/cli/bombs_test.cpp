@@ -21,8 +21,9 @@ class Bombs : public ProgramTest {
 protected:
     /// What info says of the file with 256 MiB of address space, of which the program and its libraries take a third.
     ProcessResult info(const std::string& file, const std::string& options = "") const {
-        return run_process({"/bin/sh", "-c", "ulimit -v 262144; exec \"$0\" info \"$1\" " + options, VKCPPM_PROGRAM, file},
-                           folder_.path());
+        return run_process(
+            {"/bin/sh", "-c", "ulimit -v 262144; exec \"$0\" info \"$1\" " + options, VKCPPM_PROGRAM, file},
+            folder_.path());
     }
 
     void expect_refused(const std::string& bytes, const Words& told) const {
@@ -40,7 +41,8 @@ TEST_F(Bombs, Accessors) {
     accessor(zeros).erase("bufferView");
     for (const std::uint64_t count : {std::uint64_t(1000000), std::uint64_t(1) << 31, std::uint64_t(1) << 52}) {
         accessor(zeros)["count"] = count;
-        expect_refused(zeros.gltf(), {"bomb.gltf: the number of ", fmt::format(" is {}", count / 3).substr(0, 3), "the limit is"});
+        expect_refused(zeros.gltf(),
+                       {"bomb.gltf: the number of ", fmt::format(" is {}", count / 3).substr(0, 3), "the limit is"});
     }
     GltfBuilder many = one_triangle();
     accessor(many).erase("bufferView");
@@ -80,12 +82,14 @@ TEST_F(Bombs, DepthOfNodesAndOfJson) {
     b.add("nodes", json::object());
     write_bytes(folder_ / "deep.gltf", b.gltf());
     expect_done(info("deep.gltf"));
-    expect_refused("{\"asset\": {\"version\": \"2.0\"}, \"extras\": " + std::string(1000000, '['), {"depth of the JSON is 65"});
+    expect_refused("{\"asset\": {\"version\": \"2.0\"}, \"extras\": " + std::string(1000000, '['),
+                   {"depth of the JSON is 65"});
 }
 
 TEST_F(Bombs, Pictures) {
     // Magic, version, then attributes: name, type, size, value.
-    const auto attribute = [](const std::string& name, const std::string& type, const std::vector<std::int32_t>& words) {
+    const auto attribute = [](const std::string& name, const std::string& type,
+                              const std::vector<std::int32_t>& words) {
         std::string bytes = name + '\0' + type + '\0';
         const auto append = [&](std::int32_t word) { bytes.append(reinterpret_cast<const char*>(&word), 4); };
         append(std::int32_t(4 * words.size()));
@@ -97,8 +101,10 @@ TEST_F(Bombs, Pictures) {
         write_bytes(folder_ / "sky", bytes);
         expect_failure(info(scene("slab"), "--environment sky"), 65, told, told.front());
     };
-    expect_no_environment(exr + attribute("dataWindow", "box2i", {0, 0, 0x7fffffff, 0}), {"sky: ", "2147483648x1 pixels"});
-    expect_no_environment(exr + attribute("dataWindow", "box2i", {0, 0, 65535, 32767}), {"sky: ", "65536x32768 pixels"});
+    expect_no_environment(exr + attribute("dataWindow", "box2i", {0, 0, 0x7fffffff, 0}),
+                          {"sky: ", "2147483648x1 pixels"});
+    expect_no_environment(exr + attribute("dataWindow", "box2i", {0, 0, 65535, 32767}),
+                          {"sky: ", "65536x32768 pixels"});
     expect_no_environment(exr + attribute("displayWindow", "box2i", {0, 0, 4095, 2047}), {"sky: ", "4096x2048 pixels"});
     std::string huge = exr + attribute("comments", "string", {0});
     huge.replace(huge.size() - 8, 4, "\xff\xff\xff\x7f");

@@ -111,7 +111,8 @@ TEST_F(Checkpoint, SurvivesBeingKilledAtAnyMoment) {
         }
     }
     ASSERT_EQ(next.front(), "--resume") << "no checkpoint was ever written";
-    const ProcessResult resumed = run(words({"--iterations", "1", "--resume", "a.ckpt", "-o", "a.exr", "--hash"}, size));
+    const ProcessResult resumed =
+        run(words({"--iterations", "1", "--resume", "a.ckpt", "-o", "a.exr", "--hash"}, size));
     expect_done(resumed);
     EXPECT_TRUE(contains(resumed.err, "more than --iterations 1")) << resumed.err;
     const ProcessResult whole = run(words({"--iterations", done("a.exr"), "-o", "b.exr", "--hash"}, size));
@@ -190,8 +191,8 @@ TEST_F(Checkpoint, KeepsTheCurveOfAMeasuredRender) {
     expect_done(render({"--iterations", "3", "--seed", "2", "-o", "ref.exr"}));
     expect_done(render({"--iterations", "9", "-o", "a.exr", "--stats", "whole.json", "--reference", "ref.exr"}));
     expect_done(render({"--iterations", "5", "-o", "a.exr", "--checkpoint", "a.ckpt", "--reference", "ref.exr"}));
-    expect_done(render({"--iterations", "9", "-o", "a.exr", "--stats", "resumed.json", "--resume", "a.ckpt", "--reference",
-                        "ref.exr"}));
+    expect_done(render({"--iterations", "9", "-o", "a.exr", "--stats", "resumed.json", "--resume", "a.ckpt",
+                        "--reference", "ref.exr"}));
     Json whole = Json::parse(bytes("whole.json")), resumed = Json::parse(bytes("resumed.json"));
     for (Json* curve : {&whole["curve"], &resumed["curve"]}) {
         for (Json& point : *curve) {
@@ -206,8 +207,8 @@ TEST_F(Checkpoint, KeepsTheCurveOfAMeasuredRender) {
     }
     // An error that was reached stays reached.
     const double reached = whole["curve"][2]["relmse"];
-    expect_done(render({"--iterations", "9", "-o", "b.exr", "--checkpoint", "b.ckpt", "--reference", "ref.exr", "--stop-at",
-                        fmt::format("relmse={}", reached)}));
+    expect_done(render({"--iterations", "9", "-o", "b.exr", "--checkpoint", "b.ckpt", "--reference", "ref.exr",
+                        "--stop-at", fmt::format("relmse={}", reached)}));
     expect_done(render({"--iterations", "9", "-o", "c.exr", "--resume", "b.ckpt", "--reference", "ref.exr", "--stop-at",
                         fmt::format("relmse={}", reached)}));
     EXPECT_EQ(done("b.exr"), done("c.exr"));
@@ -231,7 +232,8 @@ TEST_F(Checkpoint, OfAnotherRenderIsRefusedWithWhatDiffers) {
     refused({"--significance", "0.1"}, {"significance: 0.05 in the checkpoint, 0.1 asked"});
     refused({"--rings", "3"}, {"rings: 2 in the checkpoint, 3 asked"});
     refused({"--sectors", "8"}, {"sectors: 6 in the checkpoint, 8 asked"});
-    refused({"--aperture", "0.1", "--focus-distance", "2"}, {"aperture: 0", "focus_distance: absent in the checkpoint, 2"});
+    refused({"--aperture", "0.1", "--focus-distance", "2"},
+            {"aperture: 0", "focus_distance: absent in the checkpoint, 2"});
     refused({"--aovs"}, {"aovs: false in the checkpoint, true asked"});
     refused({"--thin-glass", "solid"}, {"thin_glass: thin in the checkpoint, solid asked"});
     refused({"--environment", "ref.exr"}, {"scene_hash: "});
@@ -255,7 +257,8 @@ TEST_F(Checkpoint, OfAnotherRenderIsRefusedWithWhatDiffers) {
     expect_failure(render({"-o", "b.exr", "--resume", "ref.exr"}), 65, {"ref.exr", "no checkpoint"});
     write_bytes(folder_ / "cut.ckpt", before.substr(0, before.size() - 1));
     expect_failure(render({"-o", "b.exr", "--resume", "cut.ckpt"}), 65, {"cut.ckpt", "damaged"});
-    expect_failure(render({"-o", "a.ckpt", "--resume", "a.ckpt"}), 2, {"a.ckpt"}, "the picture in the checkpoint's place");
+    expect_failure(render({"-o", "a.ckpt", "--resume", "a.ckpt"}), 2, {"a.ckpt"},
+                   "the picture in the checkpoint's place");
     expect_failure(render({"--checkpoint-every", "1s"}), 2, {"--checkpoint-every"});
 }
 
@@ -265,11 +268,12 @@ TEST_F(Checkpoint, AFullDiskKeepsTheOldOneAndThePicture) {
     // 32 KiB hold the picture, but no checkpoint.
     ASSERT_GT(before.size(), 40'000u);
     ASSERT_LT(bytes("a.exr").size(), 25'000u);
-    const auto result = run_process({"/bin/sh", "-c",
-                                     "ulimit -f 64; exec \"$0\" \"$1\" --size 32x24 --photons 500 --iterations 6 -o a.exr "
-                                     "--resume a.ckpt --checkpoint-every 0.001ms",
-                                     VKCPPM_PROGRAM, scene("slab_floor")},
-                                    folder_.path());
+    const auto result =
+        run_process({"/bin/sh", "-c",
+                     "ulimit -f 64; exec \"$0\" \"$1\" --size 32x24 --photons 500 --iterations 6 -o a.exr "
+                     "--resume a.ckpt --checkpoint-every 0.001ms",
+                     VKCPPM_PROGRAM, scene("slab_floor")},
+                    folder_.path());
     expect_failure(result, 73, {"a.ckpt", "cannot write"});
     EXPECT_TRUE(contains(result.err, "warning: no checkpoint after 6 iterations: cannot write a.ckpt")) << result.err;
     EXPECT_TRUE(bytes("a.ckpt") == before) << "the old checkpoint was touched";
@@ -283,7 +287,8 @@ TEST_F(Checkpoint, AFullDiskKeepsTheOldOneAndThePicture) {
 // Threads of lavapipe and its SIMD width are the driver's matter, whose kernels are compiled anew for each width.
 TEST_F(Checkpoint, HashesAreTheSameForAllThreadsAndWidths) {
     std::string expected;
-    for (const char* variable : {"LP_NUM_THREADS=1", "LP_NUM_THREADS=2", "LP_NUM_THREADS=3", "LP_NATIVE_VECTOR_WIDTH=128"}) {
+    for (const char* variable :
+         {"LP_NUM_THREADS=1", "LP_NUM_THREADS=2", "LP_NUM_THREADS=3", "LP_NATIVE_VECTOR_WIDTH=128"}) {
         Words all = words({"--iterations", "3", "-o", "a.exr", "--hash"});
         all.insert(all.begin(), {"/usr/bin/env", variable, VKCPPM_PROGRAM});
         const ProcessResult result = run_process(all, folder_.path());

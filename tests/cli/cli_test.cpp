@@ -62,8 +62,8 @@ protected:
 // ---- Help, version and the listing commands
 
 TEST_F(Cli, HelpAndVersionGoToStandardOutput) {
-    for (const Words& words : {Words{"--help"}, Words{"-h"}, Words{"race", "--help"}, Words{"compare", "--help"}, Words{"info", "--help"},
-                               Words{"devices", "--help"}}) {
+    for (const Words& words : {Words{"--help"}, Words{"-h"}, Words{"race", "--help"}, Words{"compare", "--help"},
+                               Words{"info", "--help"}, Words{"devices", "--help"}}) {
         const auto result = run(words);
         expect_done(result);
         EXPECT_TRUE(contains(result.out, "Usage: vkcppm")) << shown(words) << "\n" << result.out;

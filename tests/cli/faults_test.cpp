@@ -37,8 +37,8 @@ class Faults : public FaultLayer, public testing::WithParamInterface<Fault> {};
 
 TEST_P(Faults, EndInALineAndKeepTheGoodPicture) {
     write_bytes(folder_ / "good.exr", "good");
-    const auto result = run_on(GetParam().text, {scene("slab"), "--size", "16x12", "--iterations", "64", "--photons", "500",
-                                                 "--quiet", "-o", "good.exr", "--png", "new.png"});
+    const auto result = run_on(GetParam().text, {scene("slab"), "--size", "16x12", "--iterations", "64", "--photons",
+                                                 "500", "--quiet", "-o", "good.exr", "--png", "new.png"});
     expect_failure(result, GetParam().code, GetParam().told, GetParam().text);
     EXPECT_TRUE(read_bytes(folder_ / "good.exr") == "good") << "the good picture is lost";
     EXPECT_EQ(names_in(folder_.path()), std::set<std::string>{"good.exr"});
@@ -58,7 +58,8 @@ const std::vector<Fault> faults = {
      {"buffer '", " bytes beside ", " in use, the memory of the device '", "has 200000"}},
 };
 
-INSTANTIATE_TEST_SUITE_P(, Faults, testing::ValuesIn(faults), [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(, Faults, testing::ValuesIn(faults),
+                         [](const auto& info) { return std::string(info.param.name); });
 
 // A program that fails with the layer would pass the tests above whatever it did.
 TEST_F(FaultLayer, TheLayerItselfIsNoFault) {

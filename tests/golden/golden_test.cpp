@@ -59,7 +59,8 @@ TEST_P(Golden, Picture) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Golden, testing::ValuesIn(cases()), [](const auto& info) { return identifier(name_of(info.param)); });
+INSTANTIATE_TEST_SUITE_P(Scenes, Golden, testing::ValuesIn(cases()),
+                         [](const auto& info) { return identifier(name_of(info.param)); });
 
 }  // namespace
 }  // namespace vkcppm::test

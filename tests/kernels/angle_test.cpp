@@ -62,7 +62,8 @@ float angle_in_steps(float y, float x) {
     const float t = std::min(a, b) / std::max(a, b);
     const float s = float(double(t) * t);
     float p = -0.00466877315f;
-    for (const float c : {0.0241661891f, -0.0593671016f, 0.0990609676f, -0.140165851f, 0.199692354f, -0.333319604f, 0.999999881f}) {
+    for (const float c :
+         {0.0241661891f, -0.0593671016f, 0.0990609676f, -0.140165851f, 0.199692354f, -0.333319604f, 0.999999881f}) {
         p = float(double(float(double(p) * s)) + double(c));
     }
     float angle = float(double(p) * t);

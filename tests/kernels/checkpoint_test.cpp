@@ -63,8 +63,8 @@ TEST_P(Checkpoints, GoOnWithTheSameBits) {
     const Report expected = report_of(whole);
     // The first time on buffers of zeros, then on what the time before has left in them.
     for (const auto& [report, state] : kept) {
-        const std::string what = "put down after " + std::to_string(report.iterations) + " iterations, compared after " +
-                                 std::to_string(last);
+        const std::string what = "put down after " + std::to_string(report.iterations) +
+                                 " iterations, compared after " + std::to_string(last);
         resumed.integrator.restore(report, state);
         EXPECT_EQ(resumed.integrator.completed(), report.iterations);
         resumed.integrator.run(last - resumed.integrator.completed());
@@ -78,7 +78,8 @@ TEST_P(Checkpoints, GoOnWithTheSameBits) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Estimators, Checkpoints, testing::ValuesIn(all_estimators()), [](const auto& info) { return identifier(info.param); });
+INSTANTIATE_TEST_SUITE_P(Estimators, Checkpoints, testing::ValuesIn(all_estimators()),
+                         [](const auto& info) { return identifier(info.param); });
 
 class CheckpointState : public GpuTest {};
 
@@ -134,7 +135,8 @@ TEST_F(PassHashes, DoNotDependOnHowTheWorkIsCut) {
     Rig whole(room(), settings_of("cppm"), plain_device());
     const auto expected = run(whole, 5);
     ASSERT_EQ(expected.size(), 30u);
-    EXPECT_EQ(expected[6].pass + expected[7].pass + expected[8].pass + expected[9].pass + expected[10].pass + expected[11].pass,
+    EXPECT_EQ(expected[6].pass + expected[7].pass + expected[8].pass + expected[9].pass + expected[10].pass +
+                  expected[11].pass,
               "eyephotongridknngatherupdate");
 
     Rig cut(room(), settings_of("cppm"), plain_device());

@@ -26,7 +26,8 @@ Rendering tiny_render(Device& on) {
 
 /// Whether both pictures have the same bits.
 bool same(const Image& a, const Image& b) {
-    return a.rgb.size() == b.rgb.size() && std::memcmp(a.rgb.data(), b.rgb.data(), a.rgb.size() * sizeof(a.rgb[0])) == 0;
+    return a.rgb.size() == b.rgb.size() &&
+           std::memcmp(a.rgb.data(), b.rgb.data(), a.rgb.size() * sizeof(a.rgb[0])) == 0;
 }
 
 class Pipelines : public GpuTest {

@@ -67,7 +67,8 @@ TEST_P(Resume, SmallStepBudgetsGiveTheSameBits) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Estimators, Resume, testing::ValuesIn(all_estimators()), [](const auto& info) { return identifier(info.param); });
+INSTANTIATE_TEST_SUITE_P(Estimators, Resume, testing::ValuesIn(all_estimators()),
+                         [](const auto& info) { return identifier(info.param); });
 
 class Determinism : public GpuTest {};
 

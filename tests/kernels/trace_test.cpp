@@ -94,7 +94,8 @@ bool agree(const FlatScene& flat, const Scene& scene, const gpu::RayInput& ray, 
     // Only the nearer answer can be at fault: the other one missed it.
     const Answer& nearer = !b.hit || (a.hit && a.t < b.t) ? a : b;
     // Where on the triangle a ray meets it errs as t does.
-    if (distance_to_edges(scene, nearer.triangle, ray) > edge_distance + t_bound(flat, nearer.triangle, ray, nearer.t)) {
+    if (distance_to_edges(scene, nearer.triangle, ray) >
+        edge_distance + t_bound(flat, nearer.triangle, ray, nearer.t)) {
         return false;
     }
     ++undecided;

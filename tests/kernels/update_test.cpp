@@ -201,7 +201,8 @@ std::vector<std::string> rows_tested_here() {
     return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(Estimators, Update, testing::ValuesIn(rows_tested_here()), [](const auto& info) { return identifier(info.param); });
+INSTANTIATE_TEST_SUITE_P(Estimators, Update, testing::ValuesIn(rows_tested_here()),
+                         [](const auto& info) { return identifier(info.param); });
 
 class FilmSum : public GpuTest {
 protected:

@@ -20,11 +20,11 @@ struct Embree::Impl {
 Embree::Embree(std::span<const std::array<glm::vec3, 3>> triangles, bool robust) : impl_(std::make_unique<Impl>()) {
     if (robust) rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
     RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* corners = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                    sizeof(glm::vec3), 3 * triangles.size()));
+    auto* corners = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), 3 * triangles.size()));
     for (const auto& triangle : triangles) corners = std::ranges::copy(triangle, corners).out;
-    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                        3 * sizeof(std::uint32_t), triangles.size()));
+    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), triangles.size()));
     std::iota(indices, indices + 3 * triangles.size(), 0u);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(impl_->scene, geometry);

@@ -62,14 +62,16 @@ TEST_F(Dielectrics, VanishUnderAWhiteSky) {
         add_sphere(s, glm::dvec3(0.0), 0.7, 4, add_glass(s, 1.33f), true);
         add_sphere(s, glm::dvec3(0.0), 0.3, 4, add_glass(s, 1.7f), true);
     };
-    expect_error("a glass ball under a white sky", deviation(picture(under_sky(ball, {0, 0, 4}, {0, 0, 0})), 1.0), 1e-4);
+    expect_error("a glass ball under a white sky", deviation(picture(under_sky(ball, {0, 0, 4}, {0, 0, 0})), 1.0),
+                 1e-4);
     expect_error("glass plate at 1e-5 rad under a white sky",
                  deviation(picture(under_sky(plate, {0, 1e-5, 2}, {0, 0, 0})), 1.0), 1e-4);
     expect_error("mirror at 1e-5 rad under a white sky",
                  deviation(picture(under_sky(mirror, {0, 1e-5, 2}, {0, 0, 0})), 1.0), 1e-4);
     expect_error("metal of roughness 1e-10 under a white sky",
                  deviation(picture(under_sky(narrow, {0, 1, 2}, {0, 0, 0})), 1.0), 1e-4);
-    expect_error("three nested glasses under a white sky", deviation(picture(under_sky(nested, {0, 0, 4}, {0, 0, 0})), 1.0), 1e-4);
+    expect_error("three nested glasses under a white sky",
+                 deviation(picture(under_sky(nested, {0, 0, 4}, {0, 0, 0})), 1.0), 1e-4);
 }
 
 // Radiance within glass is n^2 times that outside.
@@ -91,7 +93,8 @@ TEST_F(Dielectrics, RoundALight) {
         add_camera(scene, {0, 2.5, 2.5}, {0, 0, 0}, 0.8);
         return scene;
     };
-    expect_error("a light within a glass ball, against none", mean_difference(picture(lit(true)), picture(lit(false))), 0.03);
+    expect_error("a light within a glass ball, against none", mean_difference(picture(lit(true)), picture(lit(false))),
+                 0.03);
 }
 
 // No path from the eye can find the light: photons alone bring it, and eye paths have to go through the glass to meet them.
@@ -109,8 +112,8 @@ TEST_F(Dielectrics, BetweenADeltaLightAndAFloorSeenThroughIt) {
     const Image through = picture(seen(true), 64, 16384, size), plain = picture(seen(false), 64, 16384, size);
     // Both sides of a plate, all reflections between them: (1 - R) / (1 + R); angles differ by less than 0.2 rad from 0.
     const double reflectance = 0.04, plate = (1.0 - reflectance) / (1.0 + reflectance);
-    expect_error("a delta light through glass, floor seen through glass", mean_difference(through, scaled(plain, plate * plate)),
-                 0.01);
+    expect_error("a delta light through glass, floor seen through glass",
+                 mean_difference(through, scaled(plain, plate * plate)), 0.01);
 }
 
 // Rounding decides what lies behind a face without part_touching_faces: 0.29, 0.35 and 0.87.
@@ -121,7 +124,8 @@ TEST_F(Dielectrics, TouchingOtherSurfaces) {
         add_quad(scene, {-1, 0.1, -1}, {0, 0.3, 2}, {2, 0, 0}, add_diffuse(scene, {0.7f, 0.5f, 0.3f}));
         const std::uint32_t glass = add_glass(scene, 1.5f);
         const glm::dvec3 along = glm::normalize(glm::dvec3(0, 0.3, 2)), up = glm::normalize(glm::dvec3(0, 2, -0.3));
-        const glm::dvec3 corner = glm::dvec3(0, 0.1, -1) + 0.6 * along + gap * up, x(0.7, 0, 0), z = 0.8 * along, y = 0.4 * up;
+        const glm::dvec3 corner = glm::dvec3(0, 0.1, -1) + 0.6 * along + gap * up, x(0.7, 0, 0), z = 0.8 * along,
+                         y = 0.4 * up;
         add_quad(scene, corner, x, z, glass);
         add_quad(scene, corner + y, z, x, glass);
         add_quad(scene, corner, z, y, glass);
@@ -144,7 +148,8 @@ TEST_F(Dielectrics, TouchingOtherSurfaces) {
         add_camera(scene, {0.0, 1.7, 1.0}, {0, 0.2, 0.0}, 0.7);
         return scene;
     };
-    expect_error("water on glass, against 1e-4 above it", difference(picture(two_plates(0.0)), picture(two_plates(1e-4))), 0.05);
+    expect_error("water on glass, against 1e-4 above it",
+                 difference(picture(two_plates(0.0)), picture(two_plates(1e-4))), 0.05);
     const auto filled = [](double gap) {
         Scene scene;
         add_quad(scene, {-1, -1, -1}, {0, 0, 2}, {2, 0, 0}, add_diffuse(scene, {0.3f, 0.5f, 0.7f}));

@@ -51,7 +51,8 @@ TEST_P(Estimators, TenThousandIterations) {
         const auto pixels = run.integrator.buffer(BIND_PIXELS).download<gpu::PixelState>(144);
         for (std::size_t i = 0; i < pixels.size(); ++i) {
             ASSERT_TRUE(std::isfinite(pixels[i].radius2) && pixels[i].radius2 >= 0.0f && pixels[i].radius2 < 4.0f)
-                << "radius^2 " << pixels[i].radius2 << " of pixel " << i << " after " << (step + 1) * 100 << " iterations";
+                << "radius^2 " << pixels[i].radius2 << " of pixel " << i << " after " << (step + 1) * 100
+                << " iterations";
             ASSERT_TRUE(std::isfinite(pixels[i].batch) && std::isfinite(pixels[i].statistic)) << "pixel " << i;
             if (!before.empty() && before[i].radius2 > 0.0f && GetParam().statistic != Statistic::derivative) {
                 ASSERT_LE(pixels[i].radius2, before[i].radius2) << "the radius of pixel " << i << " grew";

@@ -72,7 +72,8 @@ protected:
         probe.input(BIND_TRIANGLES, flat.triangles, Buffer::Kind::float_texels);
         probe.input(PROBE_INPUT, rays);
         probe.output<gpu::RayOutput>(PROBE_OUTPUT, count);
-        probe.run(count, {.iteration = 0, .round = 0, .last_round = 0, .offset = step_budget, .count = std::uint32_t(count)});
+        probe.run(count,
+                  {.iteration = 0, .round = 0, .last_round = 0, .offset = step_budget, .count = std::uint32_t(count)});
         const auto outputs = probe.result<gpu::RayOutput>(PROBE_OUTPUT, count);
         return double(std::count_if(outputs.begin(), outputs.end(), [](const auto& o) { return o.found == 0; })) /
                double(count);
@@ -108,7 +109,11 @@ TEST_F(HardMeshes, ClosedOnesAreWatertight) {
     expect_error("rays out of a flat double cone of 2,000 needles",
                  escaping(mesh([](Scene& s) { add_double_cone(s, 1000, 0.02); }), rays), at_most);
     expect_error("rays out of a rod, 1 to 1000",
-                 escaping(mesh([](Scene& s) { add_box(s, {-0.02, -0.02, -20}, {0.02, 0.02, 20}, 0, false); }), rays), at_most);
+                 escaping(mesh([](Scene& s) {
+                              add_box(s, {-0.02, -0.02, -20}, {0.02, 0.02, 20}, 0, false);
+                          }),
+                          rays),
+                 at_most);
     expect_error("rays out of a ball of 2e-4 m, 1e6 m away", escaping(mesh([](Scene& s) {
                      add_sphere(s, {1e6, 1e6, -1e6}, 1e-4, 4, 0, false);
                  }), rays), at_most);
@@ -141,7 +146,9 @@ TEST_F(HardMeshes, WithTrianglesOfNoArea) {
     const Image hard = picture(floor([&](Scene& scene) {
         add_whole(scene);
         Random random(3);
-        const auto point = [&] { return glm::dvec3(2.0 * uniform(random) - 1.0, uniform(random), 2.0 * uniform(random) - 1.0); };
+        const auto point = [&] {
+            return glm::dvec3(2.0 * uniform(random) - 1.0, uniform(random), 2.0 * uniform(random) - 1.0);
+        };
         for (int i = 0; i < 2000; ++i) {
             const glm::dvec3 a = point(), b = point();
             const glm::dvec3 off = 1e-9 * point();
@@ -181,23 +188,27 @@ TEST_F(HardMeshes, OfTwoMaterialsInOnePlace) {
     const auto sheet = [](double gap) {
         return floor([&](Scene& scene) {
             add_whole(scene);
-            const std::uint32_t red = add_diffuse(scene, {0.8f, 0.1f, 0.1f}), blue = add_diffuse(scene, {0.1f, 0.1f, 0.8f});
+            const std::uint32_t red = add_diffuse(scene, {0.8f, 0.1f, 0.1f}),
+                                blue = add_diffuse(scene, {0.1f, 0.1f, 0.8f});
             const glm::dvec3 a(-0.7, 0.31, 0.52), b(0.73, 0.29, 0.47), c(0.11, 0.77, -0.61);
             const glm::dvec3 n = gap * glm::normalize(glm::cross(b - a, c - a));
             add_triangle(scene, a + n, b + n, c + n, red);
             add_triangle(scene, a, c, b, blue);
         });
     };
-    expect_error("a sheet of two colours, against 1e-5 apart", difference(picture(sheet(0.0)), picture(sheet(1e-5))), 0.01);
+    expect_error("a sheet of two colours, against 1e-5 apart", difference(picture(sheet(0.0)), picture(sheet(1e-5))),
+                 0.01);
     const auto lamp = [](double gap) {
         return floor([&](Scene& scene) {
             add_whole(scene);
             const glm::dvec3 n = gap * glm::normalize(glm::dvec3(0.0, 1.0, -0.3));
             add_quad(scene, {-0.5, 0.13, -0.7}, {0, 0.3, 1.0}, {1.0, 0, 0}, 0);
-            add_quad(scene, glm::dvec3(-0.25, 0.19, -0.5) + n, {0, 0.15, 0.5}, {0.5, 0, 0}, add_emitter(scene, glm::vec3(2.0f)));
+            add_quad(scene, glm::dvec3(-0.25, 0.19, -0.5) + n, {0, 0.15, 0.5}, {0.5, 0, 0},
+                     add_emitter(scene, glm::vec3(2.0f)));
         });
     };
-    expect_error("a lamp in the plane of a panel, against 1e-5 above it", difference(picture(lamp(0.0)), picture(lamp(1e-5))), 0.01);
+    expect_error("a lamp in the plane of a panel, against 1e-5 above it",
+                 difference(picture(lamp(0.0)), picture(lamp(1e-5))), 0.01);
 }
 
 }  // namespace

@@ -42,10 +42,12 @@ protected:
     /// Every pixel has a diffuse surface, so much light without photons, and so many photons, each of no flux.
     static void set(Rig& rig, float emission, std::uint32_t found) {
         const std::size_t n = rig.pixels();
-        rig.integrator.buffer(BIND_HIT_POSITION).upload(std::vector<gpu::HitPosition>(n, {glm::vec3(0.0f), HIT_DIFFUSE}));
+        rig.integrator.buffer(BIND_HIT_POSITION)
+            .upload(std::vector<gpu::HitPosition>(n, {glm::vec3(0.0f), HIT_DIFFUSE}));
         rig.integrator.buffer(BIND_HIT_WEIGHT).upload(std::vector<gpu::HitWeight>(n, {glm::vec3(1.0f), 0}));
         rig.integrator.buffer(BIND_HIT_EMISSION).upload(std::vector<gpu::HitEmission>(n, {glm::vec3(emission), 0.0f}));
-        rig.integrator.buffer(BIND_GATHERED).upload(std::vector<gpu::Gathered>(n, {glm::vec3(0.0f), found, glm::vec3(0.0f)}));
+        rig.integrator.buffer(BIND_GATHERED)
+            .upload(std::vector<gpu::Gathered>(n, {glm::vec3(0.0f), found, glm::vec3(0.0f)}));
     }
 
     static void set_state(Rig& rig, const gpu::PixelState& state) {
@@ -89,8 +91,8 @@ TEST_F(Sums, TheFilm) {
     update(rig, launches);
     const gpu::Film film = rig.all<gpu::Film>(BIND_FILM).at(0);
     const double want = double(before + launches) * double(each);
-    expect_error("film after 10^6 iterations, against doubles", std::abs((double(film.sum.x) + double(film.low.x)) / want - 1.0),
-                 1e-9);
+    expect_error("film after 10^6 iterations, against doubles",
+                 std::abs((double(film.sum.x) + double(film.low.x)) / want - 1.0), 1e-9);
 }
 
 // Sums of one float each: 1.3e-4.
@@ -102,7 +104,8 @@ TEST_F(Sums, TheAovs) {
     for (gpu::Aovs& sum : sums) {
         ASSERT_EQ(sum.hits, 1u);
         for (int c = 0; c < 3; ++c) {
-            const double albedo = double(before) * double(sum.albedo[c]), normal = double(before) * double(sum.normal[c]);
+            const double albedo = double(before) * double(sum.albedo[c]),
+                         normal = double(before) * double(sum.normal[c]);
             sum.albedo[c] = float(albedo);
             sum.albedo_low[c] = float(albedo - double(sum.albedo[c]));
             sum.normal[c] = float(normal);
@@ -112,7 +115,8 @@ TEST_F(Sums, TheAovs) {
     }
     rig.integrator.buffer(BIND_AOVS).upload(sums);
     for (std::uint32_t i = 0; i < launches / 2; ++i) {
-        rig.integrator.run_kernel("eye", rig.pixels(), {.iteration = 1, .round = 0, .last_round = 1, .offset = 0, .count = 0});
+        rig.integrator.run_kernel("eye", rig.pixels(),
+                                  {.iteration = 1, .round = 0, .last_round = 1, .offset = 0, .count = 0});
     }
     const auto hard = rig.integrator.aovs();
     double error = 0.0;
@@ -130,7 +134,9 @@ TEST_F(Sums, TheScheduleOfKnausAndZwicker) {
     run_schedule(rig, 10, float(before));
     // R_n^2 = R_1^2 Gamma(n + alpha) / (Gamma(1 + alpha) Gamma(n + 1)), n iterations done.
     const double alpha = double(rig.integrator.params().alpha);
-    const auto log_radius2 = [&](double n) { return -std::log(boost::math::tgamma_delta_ratio(n + 1.0 + alpha, 1.0 - alpha)); };
+    const auto log_radius2 = [&](double n) {
+        return -std::log(boost::math::tgamma_delta_ratio(n + 1.0 + alpha, 1.0 - alpha));
+    };
     const double want = -(log_radius2(before + launches) - log_radius2(before));
     const double got = std::log(double(state_of(rig).radius2) / first_radius2);
     expect_error("shrinkage of sppm-kz about iteration 10^6", std::abs(got / want - 1.0), 1e-4);
@@ -231,7 +237,8 @@ TEST_F(Sums, ChiSquared) {
         const auto after = rig.all<gpu::PixelState>(BIND_PIXELS);
         double error = 0.0;
         for (std::uint32_t i = 0; i < states; ++i) {
-            error = std::max(error, std::abs(double(after[i].statistic) * threshold - want[i]) / std::max(want[i], 1.0));
+            error =
+                std::max(error, std::abs(double(after[i].statistic) * threshold - want[i]) / std::max(want[i], 1.0));
         }
         expect_error(fmt::format("chi-squared of sums from 1 to 4e9, {}", estimator), error, 1e-5);
     }

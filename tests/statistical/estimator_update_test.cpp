@@ -73,7 +73,8 @@ public:
         integrator.buffer(BIND_GATHERED).upload(gathered);
         if (!before.tally.empty()) integrator.buffer(BIND_TALLY).upload(before.tally);
         if (!before.moments.empty()) integrator.buffer(BIND_MOMENTS).upload(before.moments);
-        integrator.run_kernel("update", pixels(), {.iteration = 0, .round = 0, .last_round = 1, .offset = 0, .count = 0});
+        integrator.run_kernel("update", pixels(),
+                              {.iteration = 0, .round = 0, .last_round = 1, .offset = 0, .count = 0});
         return {field_.states(), before.found,
                 integrator.buffer(BIND_TALLY).download<std::uint32_t>(before.tally.size()),
                 integrator.buffer(BIND_MOMENTS).download<float>(before.moments.size())};
@@ -278,7 +279,8 @@ Outcome compare_f_test(const std::string& name, std::uint32_t rings, std::uint32
             for (std::size_t cell = ring * cells.sectors; cell < (ring + 1) * cells.sectors; ++cell) {
                 within -= statistics.sums[cell] * statistics.sums[cell] / samples;
             }
-            EXPECT_NEAR(next[2 * n + ring], want.clear ? 0.0 : within, 2e-5 * within + 1e-14 * samples * squares) << "ring " << ring;
+            EXPECT_NEAR(next[2 * n + ring], want.clear ? 0.0 : within, 2e-5 * within + 1e-14 * samples * squares)
+                << "ring " << ring;
         }
         if (testing::Test::HasFailure()) {
             ADD_FAILURE() << "pixel " << pixel << ", moments " << testing::PrintToString(kept) << ", samples "
@@ -330,7 +332,8 @@ TEST_P(OtherCells, DecideAsTheReference) {
 std::string test_name(const testing::TestParamInfo<std::string>& info) { return identifier(info.param); }
 
 INSTANTIATE_TEST_SUITE_P(Estimators, EstimatorUpdate,
-                         testing::Values("cppm-lf", "cppm-gof", "cppm-fold", "cppm-null", "ftest", "ftest-fold"), test_name);
+                         testing::Values("cppm-lf", "cppm-gof", "cppm-fold", "cppm-null", "ftest", "ftest-fold"),
+                         test_name);
 INSTANTIATE_TEST_SUITE_P(Estimators, OtherCells,
                          testing::Values("cppm-lf", "cppm-gof", "cppm-fold", "ftest", "ftest-fold"), test_name);
 

@@ -50,10 +50,12 @@ TEST(Radius, HachisukaAndJensenAtConstantDensityAndAtConstantCount) {
             const auto found = std::uint32_t(std::lround(1e6 * ratio_of(0)));
             const std::vector<gpu::Gathered> gathered = {{glm::vec3(0.0f), found}, {glm::vec3(0.0f), 10}};
             field.integrator().buffer(BIND_GATHERED).upload(gathered);
-            field.integrator().run_kernel("update", 2, {.iteration = 0, .round = 0, .last_round = 1, .offset = 0, .count = 0});
+            field.integrator().run_kernel("update", 2,
+                                          {.iteration = 0, .round = 0, .last_round = 1, .offset = 0, .count = 0});
         }
         EXPECT_NEAR(ratio_of(0), at_density, 1e-4) << iterations << " iterations";
-        const double n = iterations, at_count = std::exp(std::lgamma(n + 1.0) + std::lgamma(1.5) - std::lgamma(n + 1.5));
+        const double n = iterations,
+                     at_count = std::exp(std::lgamma(n + 1.0) + std::lgamma(1.5) - std::lgamma(n + 1.5));
         EXPECT_NEAR(ratio_of(1), at_count, 1e-5) << iterations << " iterations";
     }
 }
@@ -179,14 +181,16 @@ TEST(Radius, AppmApproachesTheOptimumOnAGaussianSpot) {
         const std::vector<gpu::PixelState> states = field.states();
         std::vector<double> ratios;
         // Laplacian -2 / sigma^2 of the spot of height 1, sigma = R_1 / 2; V as above with f = 1.
-        const double best = reference::appm_optimal_radius(reference::smootherstep_kernel, paths * pi * first * first / lambda,
-                                                           -8.0 / (first * first), paths * iterations);
+        const double best =
+            reference::appm_optimal_radius(reference::smootherstep_kernel, paths * pi * first * first / lambda,
+                                           -8.0 / (first * first), paths * iterations);
         for (std::size_t i = 0; i < states.size(); ++i) {
             const auto sum = [&](std::uint32_t row) { return double(iterations) * moments[row * states.size() + i]; };
             const reference::AppmState state{sum(APPM_SECOND_MOMENT), sum(APPM_LAPLACIAN), iterations,
                                              double(states[i].total), first};
             const double want = reference::appm_radius(state, reference::smootherstep_kernel, paths, 0.1, 2.0, 1e-300);
-            ASSERT_NEAR(std::sqrt(states[i].radius2) / want, 1.0, 1e-5) << "pixel " << i << ", iteration " << iterations;
+            ASSERT_NEAR(std::sqrt(states[i].radius2) / want, 1.0, 1e-5)
+                << "pixel " << i << ", iteration " << iterations;
             ratios.push_back(std::sqrt(states[i].radius2) / best);
         }
         std::nth_element(ratios.begin(), ratios.begin() + ratios.size() / 2, ratios.end());

@@ -66,7 +66,8 @@ TEST(Size, ChiSquaredHasItsExactSizeInOneLook) {
             EXPECT_NEAR(100.0 * exact, simulated, 0.1) << estimator << ", M = " << count;
             field.reset(1.0);
             field.run_exact(count);
-            EXPECT_NEAR(field.rejected(), exact, 4.0 * binomial_error(exact, side * side)) << estimator << ", M = " << count;
+            EXPECT_NEAR(field.rejected(), exact, 4.0 * binomial_error(exact, side * side))
+                << estimator << ", M = " << count;
         }
     }
 }

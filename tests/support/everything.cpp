@@ -12,7 +12,8 @@ using nlohmann::json;
 /// The index of an accessor over compressed floats of three components, which lie in the first bytes of the buffer.
 int compressed_float3(GltfBuilder& builder, const std::vector<Float3>& values) {
     std::vector<std::uint8_t> encoded(meshopt_encodeVertexBufferBound(values.size(), sizeof(Float3)));
-    encoded.resize(meshopt_encodeVertexBuffer(encoded.data(), encoded.size(), values.data(), values.size(), sizeof(Float3)));
+    encoded.resize(
+        meshopt_encodeVertexBuffer(encoded.data(), encoded.size(), values.data(), values.size(), sizeof(Float3)));
     const int view = builder.view(encoded);
     json& stored = builder.document["bufferViews"][view];
     const json extension = {{"buffer", 0}, {"byteOffset", stored["byteOffset"]}, {"byteLength", stored["byteLength"]},
@@ -55,14 +56,15 @@ void add_materials(GltfBuilder& b) {
                           {"KHR_materials_clearcoat",
                            {{"clearcoatFactor", 0.5}, {"clearcoatRoughnessFactor", 0.1}, {"clearcoatTexture", plain},
                             {"clearcoatRoughnessTexture", plain}, {"clearcoatNormalTexture", plain}}}}}});
-    b.add("materials", {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}},
-                        {"alphaMode", "BLEND"},
-                        {"extensions",
-                         {{"KHR_materials_transmission", {{"transmissionFactor", 1}, {"transmissionTexture", plain}}},
-                          {"KHR_materials_ior", {{"ior", 1.5}}},
-                          {"KHR_materials_dispersion", {{"dispersion", 0.3}}},
-                          {"KHR_materials_volume",
-                           {{"thicknessFactor", 0.1}, {"attenuationDistance", 0.5}, {"attenuationColor", {1, 0.5, 0}}}}}}});
+    b.add("materials",
+          {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}},
+           {"alphaMode", "BLEND"},
+           {"extensions",
+            {{"KHR_materials_transmission", {{"transmissionFactor", 1}, {"transmissionTexture", plain}}},
+             {"KHR_materials_ior", {{"ior", 1.5}}},
+             {"KHR_materials_dispersion", {{"dispersion", 0.3}}},
+             {"KHR_materials_volume",
+              {{"thicknessFactor", 0.1}, {"attenuationDistance", 0.5}, {"attenuationColor", {1, 0.5, 0}}}}}}});
     b.add("materials", {{"extensions", {{"KHR_materials_unlit", json::object()}}}});
 }
 
@@ -83,9 +85,11 @@ GltfBuilder everything() {
     const std::vector<Float3> square = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0.5}};
     const int position = compressed_float3(b, square);
     const int normal = normalized(
-        b, b.accessor(b.view(std::vector<std::int8_t>{0, 0, 127, 0, 0, 0, 127, 0, 0, 9, 127, 0, 0, 0, 127, 0}), "VEC3", 5120, 4));
+        b, b.accessor(b.view(std::vector<std::int8_t>{0, 0, 127, 0, 0, 0, 127, 0, 0, 9, 127, 0, 0, 0, 127, 0}), "VEC3",
+                      5120, 4));
     b.document["bufferViews"].back()["byteStride"] = 4;
-    const int tangent = b.accessor(b.view(std::vector<float>{1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, -1, 1, 0, 0, 1}), "VEC4", 5126, 4);
+    const int tangent =
+        b.accessor(b.view(std::vector<float>{1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, -1, 1, 0, 0, 1}), "VEC4", 5126, 4);
     const int uv0 = normalized(b, b.accessor(b.view(std::vector<std::uint16_t>{0, 0, 65535, 0, 0, 65535, 65535, 65535}),
                                              "VEC2", 5123, 4));
     const int uv1 = b.accessor(b.view(std::vector<float>{0, 0, 2, 0, 0, 2, 2, 2}), "VEC2", 5126, 4);
@@ -100,7 +104,9 @@ GltfBuilder everything() {
     const int strip = b.mesh({{"attributes", attributes}, {"mode", 5}, {"material", 0},
                               {"targets", json::array({{{"POSITION", displacement}}})}});
     b.document["meshes"][strip]["weights"] = {0.5};
-    const int indexed = b.mesh({{"attributes", {{"POSITION", position}, {"TEXCOORD_0", uv0}}}, {"indices", b.u16({0, 1, 2, 2, 1, 3})}, {"material", 1}});
+    const int indexed = b.mesh({{"attributes", {{"POSITION", position}, {"TEXCOORD_0", uv0}}},
+                                {"indices", b.u16({0, 1, 2, 2, 1, 3})},
+                                {"material", 1}});
     b.document["meshes"][indexed]["primitives"].push_back(
         {{"attributes", {{"POSITION", position}, {"TEXCOORD_0", uv0}}}, {"mode", 6}, {"material", 2}});
     const int places = b.float3({{0, 0, 0}, {2, 0, 0}});
@@ -108,7 +114,8 @@ GltfBuilder everything() {
     b.add("nodes", {{"mesh", indexed},
                     {"rotation", {0, 0, 0.6, 0.8}},
                     {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", places}}}}}}}});
-    b.add("nodes", {{"translation", {0, 3, 0}}, {"camera", 0}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    b.add("nodes",
+          {{"translation", {0, 3, 0}}, {"camera", 0}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
     b.add("nodes", {{"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1}},
                     {"children", {4}}, {"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}});
     b.add("nodes", {{"extensions", {{"KHR_lights_punctual", {{"light", 2}}}}}});

@@ -30,7 +30,8 @@ std::string bad_line(const Error& error, const std::filesystem::path& file) {
     if (!line.starts_with(file.string() + ": ")) return "it does not begin with the file: " + line;
     if (line.size() > longest_line + file.string().size()) return "it is long: " + line;
     if (std::ranges::any_of(line, [](unsigned char c) { return c == '\n'; })) return "it is no line: " + line;
-    for (const char* catch_all : {"the file is refused; ", "the document is refused by tinygltf", "its size is too large; "}) {
+    for (const char* catch_all :
+         {"the file is refused; ", "the document is refused by tinygltf", "its size is too large; "}) {
         if (line.starts_with(file.string() + ": " + catch_all)) return "no check of ours found it: " + line;
     }
     return "";

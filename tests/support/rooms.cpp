@@ -169,8 +169,9 @@ const std::vector<Case>& material_cases() {
          [](Scene& s, Settings&) {
              s.materials[floor_].base_color_texture = add_image(
                  s, 16, 4, [](auto x, auto y) { return glm::vec4(float(x % 4) / 3.0f, float(y) / 3.0f, 0.5f, 1.0f); });
-             s.materials[ball].metallic_roughness_texture = add_image(
-                 s, 4, 4, [](auto x, auto y) { return glm::vec4(0.0f, 0.25f * float(x) + 0.2f, float(y) / 3.0f, 1.0f); });
+             s.materials[ball].metallic_roughness_texture = add_image(s, 4, 4, [](auto x, auto y) {
+                 return glm::vec4(0.0f, 0.25f * float(x) + 0.2f, float(y) / 3.0f, 1.0f);
+             });
              s.materials[ball].metallic = 1.0f;
              s.materials[ball].specular = 1.0f;
              s.colors.clear();
@@ -179,7 +180,8 @@ const std::vector<Case>& material_cases() {
         {"normal_map",
          [](Scene& s, Settings&) {
              const Texture bumps = add_image(s, 8, 8, [](auto x, auto y) {
-                 return glm::vec4(0.5f + 0.2f * float(int(x % 3) - 1), 0.5f + 0.2f * float(int(y % 3) - 1), 0.95f, 1.0f);
+                 return glm::vec4(0.5f + 0.2f * float(int(x % 3) - 1), 0.5f + 0.2f * float(int(y % 3) - 1), 0.95f,
+                                  1.0f);
              });
              for (const auto i : {floor_, ball}) s.materials[i].normal_texture = bumps;
              s.materials[ball].specular = 1.0f;

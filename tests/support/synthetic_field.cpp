@@ -147,7 +147,8 @@ void SyntheticField::set_states(const std::vector<gpu::PixelState>& states) {
 
 double SyntheticField::rejected() {
     const std::vector<gpu::PixelState> all = states();
-    return double(std::count_if(all.begin(), all.end(), [](const auto& s) { return s.rejections > 0; })) / double(pixels());
+    return double(std::count_if(all.begin(), all.end(), [](const auto& s) { return s.rejections > 0; })) /
+           double(pixels());
 }
 
 std::vector<double> SyntheticField::estimates() {

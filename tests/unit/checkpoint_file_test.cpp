@@ -142,7 +142,8 @@ TEST_F(CheckpointFile, AForeignFileFormatAndStateAreToldApart) {
     EXPECT_NE(refused(std::string(1000, 'x')).find("is no checkpoint"), std::string::npos);
     EXPECT_NE(refused(with_word(good_, 8, 2)).find("of format 2, this program reads format 1"), std::string::npos);
     std::string large = good_.substr(0, good_.size() - 8) + std::string(20'000, '\0') + std::string(8, '\0');
-    EXPECT_NE(refused(with_word(large, 24, 20'300)).find("20300 bytes, the limit of its picture is"), std::string::npos);
+    EXPECT_NE(refused(with_word(large, 24, 20'300)).find("20300 bytes, the limit of its picture is"),
+              std::string::npos);
     const auto missing = test::thrown_by([&] { read_checkpoint(folder_ / "b", identity(), pixels); });
     ASSERT_TRUE(missing);
     EXPECT_EQ(missing->code(), ExitCode::no_input);
@@ -156,8 +157,9 @@ TEST_F(CheckpointFile, OfAnotherRenderTellsEveryDifference) {
     const auto error = test::thrown_by([&] { read_checkpoint(file_, asked, pixels); });
     ASSERT_TRUE(error);
     EXPECT_EQ(error->code(), ExitCode::usage);
-    EXPECT_EQ(std::string(error->what()), file_.string() + " is of another render: version: 0.1.0 in the checkpoint, 0.2.0 "
-                                          "asked; seed: absent in the checkpoint, 7 asked");
+    EXPECT_EQ(std::string(error->what()), file_.string() +
+                                              " is of another render: version: 0.1.0 in the checkpoint, 0.2.0 "
+                                              "asked; seed: absent in the checkpoint, 7 asked");
     const auto fewer = test::thrown_by([&] { read_checkpoint(file_, {{"version", "0.1.0"}}, pixels); });
     ASSERT_TRUE(fewer);
     EXPECT_NE(std::string(fewer->what()).find("estimator: cppm in the checkpoint, absent asked"), std::string::npos)

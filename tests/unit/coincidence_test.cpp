@@ -27,7 +27,8 @@ TEST(Coincidence, OnePlaceHasOneTriangle) {
     using Indices = std::vector<std::uint32_t>;
     EXPECT_EQ(distinct_triangles(std::vector{up, down}, std::vector{diffuse, diffuse}), (Indices{0, 1})) << "two sides";
     EXPECT_EQ(distinct_triangles(std::vector{up, turned, up}, std::vector{diffuse, other, diffuse}), (Indices{0}));
-    EXPECT_EQ(distinct_triangles(std::vector{up, turned, up}, std::vector{diffuse, lamp, lamp}), (Indices{1})) << "the lamp";
+    EXPECT_EQ(distinct_triangles(std::vector{up, turned, up}, std::vector{diffuse, lamp, lamp}), (Indices{1}))
+        << "the lamp";
     Corners nearly = up;
     nearly[2].x = 1.0000001f;
     EXPECT_EQ(distinct_triangles(std::vector{up, nearly}, std::vector{diffuse, diffuse}), (Indices{0, 1}));
@@ -35,8 +36,11 @@ TEST(Coincidence, OnePlaceHasOneTriangle) {
 
 TEST(Coincidence, WhatHasNoNormalIsLeftOut) {
     const glm::vec3 a(0.1f, 0.2f, 0.3f), b(0.7f, 0.1f, 0.5f);
-    const std::vector<Corners> corners = {
-        {a, a, a}, {a, b, a}, {a, b, 0.5f * (a + b)}, {a, b, 0.5f * (a + b) + glm::vec3(1e-3f, 0, 0)}, {a, b, a + glm::vec3(0, 1e-6f, 0)}};
+    const std::vector<Corners> corners = {{a, a, a},
+                                          {a, b, a},
+                                          {a, b, 0.5f * (a + b)},
+                                          {a, b, 0.5f * (a + b) + glm::vec3(1e-3f, 0, 0)},
+                                          {a, b, a + glm::vec3(0, 1e-6f, 0)}};
     EXPECT_EQ(distinct_triangles(corners, std::vector(5, diffuse)), (std::vector<std::uint32_t>{3, 4}));
 }
 

@@ -53,7 +53,8 @@ TEST(Diagnosis, FindsWhatIsTooSmallBesideTheScene) {
         return scene;
     };
     expect_told(beside(1e4), {});
-    expect_told(beside(1e6), {"nodes[7] 'cube', materials[0] 'crystal' is 3.74 m across", "too small beside the scene"});
+    expect_told(beside(1e6),
+                {"nodes[7] 'cube', materials[0] 'crystal' is 3.74 m across", "too small beside the scene"});
 }
 
 TEST(Diagnosis, FindsNothingInGoodScenes) {

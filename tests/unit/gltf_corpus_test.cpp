@@ -137,7 +137,8 @@ TEST(GltfCorpus, HostileFilesGiveASceneOrAnError) {
     const std::vector<fs::path> files = test::gltf_files_in(scenes / "hostile");
     for (const fs::path& file : files) {
         SCOPED_TRACE(file);
-        const auto error = test::thrown_by([&] { EXPECT_EQ(test::unsoundness(load_gltf(file)), ""); });  // anything else ends the test
+        const auto error =
+            test::thrown_by([&] { EXPECT_EQ(test::unsoundness(load_gltf(file)), ""); });  // anything else ends the test
         if (!error) continue;
         ++refused;
         EXPECT_EQ(error->code(), ExitCode::bad_scene) << error->what();

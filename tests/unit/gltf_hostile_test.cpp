@@ -410,7 +410,8 @@ std::string jpeg_header(std::uint16_t width, std::uint16_t height) {
 }
 
 TEST(HostileFile, PicturesThatClaimMoreThanTheyHold) {
-    expect_bad_scene(textured(png_header(16385, 1)), {"size of images[0] is 16385 x 1; the limit is 16384 texels a side"});
+    expect_bad_scene(textured(png_header(16385, 1)),
+                     {"size of images[0] is 16385 x 1; the limit is 16384 texels a side"});
     expect_bad_scene(textured(png_header(16384, 16384)),
                      {"size of images[0] is 16384 x 16384; its 45 bytes hold 371520 texels at most"});
     expect_bad_scene(textured(png_header(65536, 32768)), {"size of images[0] is 65536 x 32768", "16384"});

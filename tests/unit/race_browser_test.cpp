@@ -80,8 +80,8 @@ protected:
     std::string drawn(const std::string& hash) {
         const test::ProcessResult result = test::run_process(
             {*browser_, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-             "--window-size=1280,900", "--user-data-dir=" + (folder_ / "profile").string(), "--virtual-time-budget=5000", "--dump-dom",
-             "file://" + (folder_ / "index.html").string() + hash},
+             "--window-size=1280,900", "--user-data-dir=" + (folder_ / "profile").string(),
+             "--virtual-time-budget=5000", "--dump-dom", "file://" + (folder_ / "index.html").string() + hash},
             folder_.path());
         EXPECT_EQ(result.exit_code, 0) << result.err;
         const std::size_t data = result.out.find("<script type=\"application/json\"");

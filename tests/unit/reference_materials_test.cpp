@@ -311,7 +311,8 @@ TEST(ReferenceMaterials, RoughSurfacesUnderASquareLight) {
         Scene scene;
         add_level(scene, 0.0, 1.0, add(scene, material));
         const glm::dvec3 corner(-1.3 - half, -0.3 - half, height);
-        test::add_quad(scene, corner, {0, 2.0 * half, 0}, {2.0 * half, 0, 0}, add(scene, test::emitter(glm::vec3(5.0f))));
+        test::add_quad(scene, corner, {0, 2.0 * half, 0}, {2.0 * half, 0, 0},
+                       add(scene, test::emitter(glm::vec3(5.0f))));
         test::add_camera(scene, slanted_eye, origin, narrow);
         const Bsdf bsdf = surface_of(scene).bsdf;
         glm::dvec3 expected(0.0);

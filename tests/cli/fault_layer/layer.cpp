@@ -44,9 +44,10 @@ template <typename Link, typename Info> auto* take_link(const Info* info, VkStru
     return found;
 }
 
-VkResult create_instance(const VkInstanceCreateInfo* info, const VkAllocationCallbacks* allocator, VkInstance* instance) {
-    next_instance_function =
-        take_link<VkLayerInstanceCreateInfo>(info, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO)->pfnNextGetInstanceProcAddr;
+VkResult create_instance(const VkInstanceCreateInfo* info, const VkAllocationCallbacks* allocator,
+                         VkInstance* instance) {
+    next_instance_function = take_link<VkLayerInstanceCreateInfo>(info, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO)
+                                 ->pfnNextGetInstanceProcAddr;
     const auto create =
         reinterpret_cast<PFN_vkCreateInstance>(next_instance_function(VK_NULL_HANDLE, "vkCreateInstance"));
     const VkResult result = create(info, allocator, instance);
@@ -56,8 +57,8 @@ VkResult create_instance(const VkInstanceCreateInfo* info, const VkAllocationCal
     return result;
 }
 
-VkResult create_device(VkPhysicalDevice physical, const VkDeviceCreateInfo* info, const VkAllocationCallbacks* allocator,
-                       VkDevice* device) {
+VkResult create_device(VkPhysicalDevice physical, const VkDeviceCreateInfo* info,
+                       const VkAllocationCallbacks* allocator, VkDevice* device) {
     const auto* link = take_link<VkLayerDeviceCreateInfo>(info, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO);
     next_device_function = link->pfnNextGetDeviceProcAddr;
     const auto create =
@@ -76,7 +77,8 @@ VkResult queue_submit(VkQueue queue, std::uint32_t count, const VkSubmitInfo* su
     return next<PFN_vkQueueSubmit>("vkQueueSubmit")(queue, count, submits, fence);
 }
 
-VkResult wait_for_fences(VkDevice device, std::uint32_t count, const VkFence* fences, VkBool32 all, std::uint64_t time) {
+VkResult wait_for_fences(VkDevice device, std::uint32_t count, const VkFence* fences, VkBool32 all,
+                         std::uint64_t time) {
     const VkResult result = next<PFN_vkWaitForFences>("vkWaitForFences")(device, count, fences, all, time);
     return fault.strikes("vkWaitForFences") ? VkResult(fault.value) : result;
 }
