@@ -24,6 +24,22 @@ uint invocation() {
     return (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
 }
 
+#define RIFFLED_GROUPS 16u  // that stay together: memory is read best in order
+
+// The pixel of this invocation. Software Vulkan gives every thread one run of consecutive work groups, and one half of a
+// picture may cost twice as much as the other: the groups are riffled, so that every run has some of all. Each riffle
+// deals the first half to the even places and the second to the odd ones; what does not fill a pack stays at the end.
+uint invocation_pixel() {
+    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    uint packs = gl_NumWorkGroups.x * gl_NumWorkGroups.y / RIFFLED_GROUPS;
+    uint middle = (packs + 1u) / 2u;
+    uint pack = group / RIFFLED_GROUPS;
+    for (uint riffle = 0u; riffle < 3u && pack < packs; ++riffle) {
+        pack = pack < middle ? 2u * pack : 2u * (pack - middle) + 1u;
+    }
+    return (pack * RIFFLED_GROUPS + group % RIFFLED_GROUPS) * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
+}
+
 // True where this launch must leave everything as it is: another pass than `own` (PASS_* bits) waits for the host, or
 // an iteration before this one does.
 bool blocked(uint own) { return (status.blocked & ~own) != 0u || status.completed != launch.iteration; }

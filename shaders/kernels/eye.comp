@@ -34,7 +34,7 @@ layout(binding = BIND_AOVS, scalar) buffer AovBlock { Aovs aovs[]; };
 bool sees_light(uint memory) { return (FEATURES & FEATURE_SPLIT) == 0u || (memory & PATH_CAUSTIC) != 0u; }
 
 void main() {
-    uint pixel = invocation();
+    uint pixel = invocation_pixel();
     if (pixel >= pixel_count() || blocked(PASS_EYE)) return;
 
     vec3 origin, direction;

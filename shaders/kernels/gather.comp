@@ -43,7 +43,7 @@ void glossy_hit(uint pixel, out Surface surface, out Bsdf bsdf, out vec3 outgoin
 #define QUEUE 16u
 
 void main() {
-    uint pixel = invocation();
+    uint pixel = invocation_pixel();
     if (pixel >= pixel_count() || blocked(PASS_GATHER)) return;
     Cursor cursor = Cursor(uvec3(CURSOR_START), 0u);
     Gathered sum = Gathered(vec3(0.0), 0u, vec3(0.0));

@@ -35,7 +35,7 @@ int keep(inout Gathered kept, float squared, uint pixel) {
 }
 
 void main() {
-    uint pixel = invocation();
+    uint pixel = invocation_pixel();
     if (pixel >= pixel_count() || blocked(PASS_KNN)) return;
     if (!gathers(pixel) || pixels[pixel].seeded != 0u) return;
 

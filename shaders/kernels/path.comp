@@ -101,7 +101,7 @@ bool scatter(inout TraceState state, Bsdf bsdf, Surface surface, vec4 lobes, vec
 }
 
 void main() {
-    uint pixel = invocation();
+    uint pixel = invocation_pixel();
     if (pixel >= pixel_count() || blocked(PASS_TRACE)) return;
     TraceState state = new_path(0u, vec3(0.0));
     if (launch.round > 0u) {

@@ -14,7 +14,7 @@
 layout(binding = BIND_FILM, scalar) buffer FilmBlock { Film film[]; };
 
 void main() {
-    uint pixel = invocation();
+    uint pixel = invocation_pixel();
     if (pixel >= pixel_count() || blocked(0u)) return;
     PixelState state = pixels[pixel];
     vec3 estimate = hit_emission[pixel].emission;
