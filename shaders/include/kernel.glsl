@@ -24,7 +24,7 @@ uint invocation() {
     return (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
 }
 
-#define RIFFLED_GROUPS 32u  // that stay together: memory is read best in order
+#define RIFFLED_GROUPS 16u  // that stay together: memory is read best in order
 
 // The pixel of this invocation. Software Vulkan gives every thread one run of consecutive work groups, and one half of a
 // picture may cost twice as much as the other: the groups are riffled, so that every run has some of all. Each riffle
@@ -34,7 +34,7 @@ uint invocation_pixel() {
     uint packs = gl_NumWorkGroups.x * gl_NumWorkGroups.y / RIFFLED_GROUPS;
     uint middle = (packs + 1u) / 2u;
     uint pack = group / RIFFLED_GROUPS;
-    for (uint riffle = 0u; riffle < 2u && pack < packs; ++riffle) {
+    for (uint riffle = 0u; riffle < 3u && pack < packs; ++riffle) {
         pack = pack < middle ? 2u * pack : 2u * (pack - middle) + 1u;
     }
     return (pack * RIFFLED_GROUPS + group % RIFFLED_GROUPS) * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
