@@ -173,16 +173,18 @@ void require_same(const Identity& there, const Identity& asked, const fs::path& 
 class OpenCheckpoint {
 public:
     explicit OpenCheckpoint(const fs::path& file) : file_(file), stream_(file, std::ios::binary) {
-        if (!stream_)
+        if (!stream_) {
             throw Error(ExitCode::no_input, fmt::format("cannot open {}: {}", file.string(), std::strerror(errno)));
+        }
         std::error_code error;
         const std::uint64_t size = fs::is_regular_file(file, error) ? fs::file_size(file, error) : 0;
         std::string fixed = size < fixed_bytes + sizeof(std::uint64_t) ? "" : read(fixed_bytes);
         if (!fixed.starts_with(magic)) fail("is no checkpoint of vkcppm");
         std::uint64_t words[3];
         std::memcpy(words, fixed.data() + magic.size(), sizeof(words));
-        if (words[0] != format)
+        if (words[0] != format) {
             fail(fmt::format("is a checkpoint of format {}, this program reads format {}", words[0], format));
+        }
         header_bytes_ = words[1];
         state_bytes_ = words[2];
         const std::uint64_t rest = size - fixed_bytes - sizeof(std::uint64_t);
@@ -201,8 +203,9 @@ public:
         }
         std::uint64_t stored = 0;
         std::memcpy(&stored, read(sizeof(stored)).data(), sizeof(stored));
-        if (stored != hash)
+        if (stored != hash) {
             fail(fmt::format("is damaged: its checksum is {}, it says {}", hash_text(hash), hash_text(stored)));
+        }
     }
 
     std::string header() {
@@ -212,8 +215,9 @@ public:
 
     std::vector<std::byte> state(std::size_t pixels) {
         const std::uint64_t most = pixels * most_state_bytes_per_pixel + most_other_state_bytes;
-        if (state_bytes_ > most)
+        if (state_bytes_ > most) {
             fail(fmt::format("has a state of {} bytes, the limit of its picture is {}", state_bytes_, most));
+        }
         stream_.seekg(std::streamoff(fixed_bytes + header_bytes_));
         std::vector<std::byte> state(state_bytes_);
         read_into(reinterpret_cast<char*>(state.data()), state.size());

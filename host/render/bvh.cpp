@@ -241,20 +241,18 @@ private:
 
     void build(std::uint32_t index, const Range& range, int depth) {
         const std::span<const Primitive> here = primitives(depth, range);
-        const Slabs slabs(range.centres);
-        const Bins table(slabs, here);
-        const Split split = depth < max_sah_depth ? table.best_split() : Split();
-        const Bounds box = table.whole();
         BinaryNode& node = nodes_[index];
-        const float as_leaf = box.half_area() * (leaf_cost + float(range.count()));
-        node = {box, range.first, range.count(), 0, 0, {as_leaf, as_leaf, as_leaf}, true};
         if (range.count() == 1) {
+            const float cost = here.front().bounds.half_area() * (leaf_cost + 1.0f);
+            node = {here.front().bounds, range.first, 1, 0, 0, {cost, cost, cost}, true};
             order_[range.first] = here.front().index;
             return;
         }
+        const Slabs slabs(range.centres);
+        const Bins table(slabs, here);
+        const Split split = depth < max_sah_depth ? table.best_split() : Split();
         const auto halves = split.axis >= 0 ? partition(range, slabs, table, split, depth) : halve(range, depth);
-        node.left = allocate();
-        node.right = allocate();
+        node = {table.whole(), range.first, range.count(), allocate(), allocate(), {}, false};
         const auto left = [&] { build(node.left, halves[0], depth + 1); };
         const auto right = [&] { build(node.right, halves[1], depth + 1); };
         if (range.count() > task_size) {
@@ -264,7 +262,9 @@ private:
             right();
         }
         const BinaryNode &a = nodes_[node.left], &b = nodes_[node.right];
-        const float as_node = box.half_area() * node_cost + Share(a, b, width).cost;
+        const float area = node.bounds.half_area();
+        const float as_node = area * node_cost + Share(a, b, width).cost;
+        const float as_leaf = area * (leaf_cost + float(range.count()));
         node.leaf = range.count() <= BVH_MAX_LEAF && as_leaf <= as_node;
         node.cost[0] = node.leaf ? as_leaf : as_node;
         for (std::uint32_t slots = 2; slots < width; ++slots) {

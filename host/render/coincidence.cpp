@@ -150,8 +150,9 @@ void part_touching_faces(std::vector<Corners>& corners, std::span<const Face> fa
 
     std::vector<Entry> movable;
     for (std::uint32_t i = 0; i < corners.size(); ++i) {
-        if (faces[i].is_solid || faces[i].emits)
+        if (faces[i].is_solid || faces[i].emits) {
             movable.emplace_back(box_of(corners[i], position_error(corners[i])), i);
+        }
     }
     const geometry::index::rtree<Entry, geometry::index::quadratic<16>> tree(movable);
     for (std::uint32_t other = 0; other < corners.size(); ++other) {

@@ -228,7 +228,7 @@ private:
     gpu::Light whole_{};
 };
 
-const gpu::SurfaceMaterial& surface_of(const FlatScene& flat, std::uint32_t triangle) {
+const gpu::SurfaceMaterial& material_of(const FlatScene& flat, std::uint32_t triangle) {
     return flat.materials[flat.shading[triangle].material & ~SHADING_FLAT];
 }
 
@@ -236,7 +236,7 @@ const gpu::SurfaceMaterial& surface_of(const FlatScene& flat, std::uint32_t tria
 std::vector<std::uint32_t> emitters(const FlatScene& flat) {
     std::vector<std::uint32_t> found;
     for (std::uint32_t i = 0; i < flat.triangles.size(); ++i) {
-        const gpu::SurfaceMaterial& surface = surface_of(flat, i);
+        const gpu::SurfaceMaterial& surface = material_of(flat, i);
         if (surface.emission != glm::vec3(0.0f) && !(surface.flags & SURFACE_UNLIT)) found.push_back(i);
     }
     std::ranges::sort(found, {}, [&](std::uint32_t i) { return flat.bvh.order[i]; });
@@ -246,7 +246,7 @@ std::vector<std::uint32_t> emitters(const FlatScene& flat) {
 void add_emitters(const Scene& scene, const FlatScene& flat, std::vector<WeighedLight>& lights) {
     std::vector<MeansOfImages> means(scene.materials.size());
     for (const std::uint32_t i : emitters(flat)) {
-        const gpu::SurfaceMaterial& surface = surface_of(flat, i);
+        const gpu::SurfaceMaterial& surface = material_of(flat, i);
         const gpu::TriangleGeometry& triangle = flat.triangles[i];
         gpu::Light light{};
         light.kind = LIGHT_TRIANGLE;

@@ -146,8 +146,9 @@ public:
     /// An external file's go into the file's hash as well.
     std::shared_ptr<const Bytes> read(std::size_t i, std::string& why) {
         const json& buffer = buffers_[i];
-        if (const auto uri = buffer.find("uri"); uri != buffer.end())
+        if (const auto uri = buffer.find("uri"); uri != buffer.end()) {
             return read_named(uri->get_ref<const std::string&>(), i, why);
+        }
         static const json::json_pointer fallback_pointer("/extensions/EXT_meshopt_compression/fallback");
         if (buffer.value(fallback_pointer, false)) {
             why = "it is a fallback for programs without EXT_meshopt_compression, and holds nothing";

@@ -110,8 +110,9 @@ public:
         int subsampling, color_space;
         check(tjDecompressHeader3(decoder_.get(), bytes_.data(), bytes_.size(), &width_, &height_, &subsampling,
                                   &color_space));
-        if (width_ <= 0 || height_ <= 0)
+        if (width_ <= 0 || height_ <= 0) {
             throw std::runtime_error("broken JPEG: its header has no picture");  // tables alone
+        }
         if (color_space == TJCS_CMYK || color_space == TJCS_YCCK) {
             throw std::runtime_error("a JPEG of four inks (CMYK) has no colours that glTF defines");
         }

@@ -19,10 +19,10 @@ layout(push_constant, scalar) uniform LaunchBlock { Launch launch; };
 layout(binding = BIND_PARAMS, scalar) uniform ParamsBlock { Params params; };
 layout(binding = BIND_STATUS, scalar) buffer StatusBlock { Status status; };
 
-// Index of this invocation; the host folds dispatches of more than 65,535 groups into y.
-uint invocation() {
-    return (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
-}
+// Index of this work group; the host folds dispatches of more than 65,535 groups into y.
+uint work_group() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
+
+uint invocation() { return work_group() * gl_WorkGroupSize.x + gl_LocalInvocationIndex; }
 
 #define RIFFLED_GROUPS 16u  // that stay together: memory is read best in order
 
@@ -30,7 +30,7 @@ uint invocation() {
 // picture may cost twice as much as the other: the groups are riffled, so that every run has some of all. Each riffle
 // deals the first half to the even places and the second to the odd ones; what does not fill a pack stays at the end.
 uint invocation_pixel() {
-    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    uint group = work_group();
     uint packs = gl_NumWorkGroups.x * gl_NumWorkGroups.y / RIFFLED_GROUPS;
     uint middle = (packs + 1u) / 2u;
     uint pack = group / RIFFLED_GROUPS;

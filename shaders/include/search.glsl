@@ -51,6 +51,14 @@ bool accepted_side(uint packed, vec3 normal, bool both_sides) {
     return d > 0.0 && d * d >= NORMAL_AGREEMENT * NORMAL_AGREEMENT * dot(n, n);
 }
 
+// Whether a pixel accepts the photon of a segment: within reach2 of its position, on its side. squared: the distance.
+bool accepts(Walk walk, uvec4 photon, vec3 position, float reach2, vec3 normal, bool both_sides, out float squared) {
+    vec3 place = uintBitsToFloat(photon.xyz);
+    vec3 offset = place - position;
+    squared = dot(offset, offset);
+    return squared < reach2 && accepted_side(photon.w, normal, both_sides) && in_segment(walk, place);
+}
+
 // Loops over the segments of a box from `cursor` on while `steps` last and ROOM holds: cursor then says where to go on.
 // PHOTONS goes through photons [walk.first, walk.last) of the segment at hand while it has steps, one a photon; a segment
 // costs one more. Loops instead of branches: software Vulkan runs every branch of a loop body for every lane, so rows are

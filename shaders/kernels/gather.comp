@@ -84,10 +84,8 @@ void main() {
             uvec2 run = uvec2(walk.first, 0u);
             for (uint bit = 1u; walk.first < walk.last && steps > 0 && bit != 0u; ++walk.first, --steps, bit <<= 1u) {
                 uvec4 photon = texelFetch(sorted, int(walk.first));
-                vec3 place = uintBitsToFloat(photon.xyz);
-                vec3 offset = place - position;
-                run.y |= dot(offset, offset) < reach2 && accepted_side(photon.w, normal, both_sides) &&
-                         in_segment(walk, place) ? bit : 0u;
+                float squared;
+                run.y |= accepts(walk, photon, position, reach2, normal, both_sides, squared) ? bit : 0u;
             }
             // A store by all lanes: a branch for each would guess wrong.
             queue[queued] = run;

@@ -78,10 +78,8 @@ void main() {
         FOR_SEGMENTS(box, cursor, walk, steps, true, {
             for (; walk.first < walk.last && steps > 0; ++walk.first, --steps) {
                 uvec4 photon = texelFetch(sorted, int(walk.first));
-                vec3 place = uintBitsToFloat(photon.xyz);
-                vec3 offset = place - position;
-                float squared = dot(offset, offset);
-                if (squared < reach2 && accepted_side(photon.w, normal, both_sides) && in_segment(walk, place)) {
+                float squared;
+                if (accepts(walk, photon, position, reach2, normal, both_sides, squared)) {
                     steps -= keep(kept, squared, pixel);
                 }
             }

@@ -38,8 +38,7 @@ void main() {
     uint lane = invocation();
     if (lane >= params.photon_lanes || blocked(PASS_PHOTON | PASS_CAPACITY)) return;
     uint share = gl_SubgroupSize * params.photons_per_lane;
-    uint first = min(((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_NumSubgroups + gl_SubgroupID) * share,
-                     params.photons);
+    uint first = min((work_group() * gl_NumSubgroups + gl_SubgroupID) * share, params.photons);
     uint end = min(first + share, params.photons);
 
     PathState state;

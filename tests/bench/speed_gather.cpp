@@ -98,8 +98,9 @@ public:
         integrator.buffer(BIND_HIT_POSITION).upload(hits);
         integrator.buffer(BIND_HIT_WEIGHT).upload(std::vector<gpu::HitWeight>(hits.size(), {glm::vec3(1.0f), 0}));
         integrator.buffer(BIND_PIXELS).upload(states_);
-        for (std::uint32_t i = 0; i < photon_count; ++i)
+        for (std::uint32_t i = 0; i < photon_count; ++i) {
             photons_.push_back({place(of.photon(uniform(random), uniform(random))), 0});
+        }
         const gpu::Params& params = integrator.params();
         // One photon a light path, each in the slot of its path.
         counters_.assign(std::size_t(params.cells) + 1 + 2 * std::size_t(params.photons) + 1, 0);
@@ -129,8 +130,9 @@ public:
     /// Photons in the discs of one iteration.
     std::uint64_t gathered() {
         std::uint64_t sum = 0;
-        for (const gpu::Gathered& g : render_.integrator().buffer(BIND_GATHERED).download<gpu::Gathered>(side * side))
+        for (const gpu::Gathered& g : render_.integrator().buffer(BIND_GATHERED).download<gpu::Gathered>(side * side)) {
             sum += g.count;
+        }
         return sum;
     }
 

@@ -27,8 +27,7 @@ std::string size_text(Extent size) { return fmt::format("{}x{}", size.width, siz
 Table bench_iterations(const Bench& bench) {
     Table table{"iterations",
                 "Iterations of cppm on one thread: device ms a pass, CPU seconds an iteration; light paths and stored "
-                "photons a "
-                "second of the photon pass, rays a second of eye and photon pass, in millions.",
+                "photons a second of the photon pass, rays a second of eye and photon pass, in millions.",
                 {"scene", "pixels", "paths", "eye", "photon", "grid", "knn", "gather", "update", "all", "CPU s",
                  "Mpaths/s", "Mphotons/s", "Mrays/s"},
                 {}};

@@ -163,8 +163,7 @@ Table bench_rays(const Bench& bench) {
         "rays",
         fmt::format("Nearest hits of {} rays in a room of bumpy spheres, beside Embree's rtcIntersect1 (default flags, "
                     "not robust). Millions of rays a CPU second; `eye`: one ray a lane, `photon`: lanes take the next "
-                    "ray. In units of "
-                    "Embree's: by CPU seconds, and by the clock.",
+                    "ray. In units of Embree's: by CPU seconds, and by the clock.",
                     side * side),
         {"triangles", "rays", "threads", "eye", "photon", "Embree", "eye / Embree", "photon / Embree", "eye, clock",
          "photon, clock", "differ"},

@@ -105,8 +105,9 @@ TEST_F(HardPhotons, NoneIsStored) {
     rig.integrator.fill(report);
     EXPECT_EQ(report.stored_photons, 0u);
     double light = 0.0;
-    for (const glm::vec3& rgb : rig.integrator.resolve().rgb)
+    for (const glm::vec3& rgb : rig.integrator.resolve().rgb) {
         light += std::abs(rgb.x) + std::abs(rgb.y) + std::abs(rgb.z);
+    }
     expect_error("light of a floor on which no photon lands", light, 0.0);
     EXPECT_EQ(rig.integrator.invalid(), 0u);
 }

@@ -156,12 +156,14 @@ TEST_F(Vectors, TheLinearTestKeepsDensitiesPositive) {
     const double kx = std::cos(pi / 6.0) / pi, ky = std::sin(pi / 6.0) / pi;
     const std::vector<double> steepest = reference::linear_cell_probabilities({2, 6}, kx, ky);
     Tally tally;
-    for (const double p : steepest)
+    for (const double p : steepest) {
         tally.push_back(std::uint32_t(std::lround(12000.0 * std::max(0.0, 1.5 * p - 0.5 / 12.0))));
+    }
     const double sum = std::accumulate(tally.begin(), tally.end(), 0.0);
     double statistic = 0.0;
-    for (std::size_t i = 0; i < tally.size(); ++i)
+    for (std::size_t i = 0; i < tally.size(); ++i) {
         statistic += std::pow(tally[i] - sum * steepest[i], 2) / (sum * steepest[i]);
+    }
     EXPECT_NEAR(test_tally(field, tally).statistic * field.integrator().params().threshold[1], statistic,
                 1e-4 * statistic);
 }

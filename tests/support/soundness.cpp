@@ -70,8 +70,9 @@ std::string unsound_camera(const Camera& camera) {
 
 std::string unsoundness(const Scene& scene) {
     const std::size_t vertices = scene.positions.size();
-    if (scene.normals.size() != vertices)
+    if (scene.normals.size() != vertices) {
         return fmt::format("{} normals of {} vertices", scene.normals.size(), vertices);
+    }
     if (std::string text = unsound_triangles(scene); !text.empty()) return text;
     for (const auto& uv : scene.uv) {
         const auto is_sound = [](const glm::vec2& v) { return is_finite({v, 0.0f}); };
@@ -81,15 +82,17 @@ std::string unsoundness(const Scene& scene) {
     const auto is_tangent = [](const glm::vec4& t) {
         return t == glm::vec4(0.0f) || (is_unit(glm::vec3(t)) && std::abs(t.w) == 1.0f);
     };
-    if (std::string text = unsound_vertices("tangents", scene.tangents, vertices, is_tangent); !text.empty())
+    if (std::string text = unsound_vertices("tangents", scene.tangents, vertices, is_tangent); !text.empty()) {
         return text;
+    }
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const std::string text = unsound_material(scene, scene.materials[i]);
         if (!text.empty()) return fmt::format("{} of material {}", text, i);
     }
     for (const TextureImage& image : scene.images) {
-        if (image.rgba.size() != 4 * image.size.pixels() || image.rgba.empty())
+        if (image.rgba.size() != 4 * image.size.pixels() || image.rgba.empty()) {
             return fmt::format("image '{}'", image.name);
+        }
     }
     if (scene.cameras.empty()) return "no camera";
     for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
