@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "render/estimators.h"
 #include "render/features.h"
+#include "render/grid.h"
 #include "render/kernels.h"
 #include "render/memory.h"
 #include "shared/bindings.h"
@@ -78,6 +79,7 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     params_.k = float(settings.k);
     params_.beta = float(settings.beta);
     params_.cells = std::bit_ceil(std::clamp(16 * settings.photons, 1u << 12, 1u << 20));
+    params_.grid_levels = 1;
     params_.sort_lanes = std::bit_ceil(std::clamp(settings.photons / 128, 64u, 4096u));
     params_.scan_blocks = std::clamp(params_.cells / 256, group_, 4096u);
     const auto key_bits = std::uint32_t(std::countr_zero(params_.cells));
@@ -117,8 +119,14 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     gpu::PixelState pixel{};
     pixel.batch = float(settings.knn);  // B_1 = k_NN
     buffer(BIND_PIXELS).upload(std::vector<gpu::PixelState>(pixels_, pixel));
-    compile(settings, scene.bvh, features);
-    warm_up();
+    specialization_ = scene_specialization(scene.bvh, features);
+    specialization_.merge(Specialization{{SPEC_ESTIMATOR, estimator.id},
+                                         {SPEC_RINGS, settings.rings},
+                                         {SPEC_SECTORS, settings.sectors},
+                                         {SPEC_DIGIT_BITS, digit_bits_},
+                                         {SPEC_LEVELS, params_.grid_levels}});
+    specialization_[SPEC_WORKGROUP] = group_;
+    compile();
 }
 
 /// Buffers whose size follows the number of photons that a lane can store; again when a render needs more.
@@ -127,37 +135,64 @@ void Integrator::allocate_photons() {
     const std::uint64_t slots = std::uint64_t(params_.photon_lanes) * params_.photon_capacity;
     buffers_.allocate(BIND_PHOTONS, "photons", slots * sizeof(gpu::Photon), Kind::uint_texels);
     buffers_.allocate(BIND_PHOTON_FLUX, "photon flux", slots * sizeof(gpu::PhotonFlux), Kind::storage);
-    buffers_.allocate(BIND_SORTED, "sorted photons", slots * sizeof(gpu::Photon), Kind::uint_texels);
-    buffers_.allocate(BIND_SORTED_FLUX, "sorted photon flux", slots * sizeof(gpu::PhotonFlux), Kind::uint_texels);
-    buffers_.allocate(BIND_PAIRS_A, "pairs a", slots * sizeof(gpu::uvec2), Kind::storage);
-    buffers_.allocate(BIND_PAIRS_B, "pairs b", slots * sizeof(gpu::uvec2), Kind::storage);
     bindings_.bind(BIND_PHOTON_TEXELS, buffer(BIND_PHOTONS));
+    constexpr std::uint64_t sorted_bytes = sizeof(gpu::Photon) + sizeof(gpu::PhotonFlux) + 2 * sizeof(gpu::uvec2);
+    const std::uint64_t most = std::min(device_.largest_texels() / (slots * sizeof(gpu::Photon)),
+                                        device_.info().memory_bytes / 4 / (slots * sorted_bytes));
+    params_.most_levels = std::uint32_t(std::clamp<std::uint64_t>(most, 1, GRID_LEVELS));
+    if (params_.grid_levels > params_.most_levels) {
+        params_.grid_levels = params_.most_levels;
+        Buffer& grid = buffer(BIND_GRID);
+        grid.upload_value(coarsest(grid.download_value<gpu::Grid>(), params_.most_levels));
+    }
+    allocate_sorted();
+}
+
+/// Buffers that hold every photon once a level of the grid.
+void Integrator::allocate_sorted() {
+    using Kind = Buffer::Kind;
+    const std::uint64_t copies = std::uint64_t(params_.photon_lanes) * params_.photon_capacity * params_.grid_levels;
+    buffers_.allocate(BIND_SORTED, "sorted photons", copies * sizeof(gpu::Photon), Kind::uint_texels);
+    buffers_.allocate(BIND_SORTED_FLUX, "sorted photon flux", copies * sizeof(gpu::PhotonFlux), Kind::uint_texels);
+    buffers_.allocate(BIND_PAIRS_A, "pairs a", copies * sizeof(gpu::uvec2), Kind::storage);
+    buffers_.allocate(BIND_PAIRS_B, "pairs b", copies * sizeof(gpu::uvec2), Kind::storage);
     bindings_.bind(BIND_SORTED_TEXELS, buffer(BIND_SORTED));
     bindings_.bind(BIND_FLUX_TEXELS, buffer(BIND_SORTED_FLUX));
     buffer(BIND_PARAMS).upload_value(params_);
 }
 
-void Integrator::compile(const Settings& settings, const Bvh& bvh, std::uint32_t features) {
-    Specialization specialization = scene_specialization(bvh, features);
-    specialization[SPEC_WORKGROUP] = group_;
-    specialization.merge(Specialization{{SPEC_ESTIMATOR, find_estimator(settings.estimator).id},
-                                        {SPEC_RINGS, settings.rings},
-                                        {SPEC_SECTORS, settings.sectors},
-                                        {SPEC_DIGIT_BITS, digit_bits_}});
+void Integrator::compile() {
+    std::vector<std::string> names;
     for (const KernelModule& module : kernel_modules()) {
         const std::string name(module.name);
         if (name == "path") continue;  // the path tracer's
-        kernels_.emplace(name, Kernel(device_, bindings_, name, module.spirv, specialization));
+        kernels_.emplace(name, Kernel(device_, bindings_, name, module.spirv, specialization_));
         passes_.push_back({name, 0, 0.0});
+        names.push_back(name);
     }
+    warm_up(names);
+}
+
+/// Room for so many levels of the grid, and kernels that know of them.
+void Integrator::add_levels(std::uint32_t levels) {
+    params_.grid_levels = levels;
+    allocate_sorted();
+    specialization_[SPEC_LEVELS] = levels;
+    for (const KernelModule& module : kernel_modules()) {
+        const std::string name(module.name);
+        if (name == "knn" || name == "gather") {
+            kernels_.at(name) = Kernel(device_, bindings_, name, module.spirv, specialization_);
+        }
+    }
+    warm_up({"knn", "gather"});
 }
 
 /// Some drivers compile a kernel when it first runs. Each runs once for an iteration that is not due, which leaves all
 /// as it is, so that no time of compiling is on the clock.
-void Integrator::warm_up() {
+void Integrator::warm_up(const std::vector<std::string>& kernels) {
     commands_.begin();
     const gpu::Launch not_due{.iteration = ~0u, .round = 0, .last_round = 0, .offset = 0, .count = 0};
-    for (const auto& [name, kernel] : kernels_) launch(name, 1, not_due);
+    for (const std::string& name : kernels) launch(name, 1, not_due);
     commands_.finish();
 }
 
@@ -179,10 +214,14 @@ void Integrator::iterate(std::uint32_t i, Pass from, Pass to, std::uint32_t firs
 void Integrator::build_grid(std::uint32_t i) {
     const gpu::Launch plain{.iteration = i, .round = 0, .last_round = 1, .offset = 0, .count = 0};
     const std::uint32_t paths_at = params_.cells + 1;
-    scan(i, paths_at, params_.photons + 1);  // photons before each path, and in all
     if (plans_grid(i)) launch("grid_plan", 1, plain);
+    scan(i, paths_at, params_.photons + 1);  // photons before each path, and in all
     launch("grid_clear", stride_invocations, plain);
-    launch("grid_key", params_.photon_lanes, plain);
+    for (std::uint32_t level = 0; level < params_.grid_levels; ++level) {
+        gpu::Launch push = plain;
+        push.count = level;
+        launch("grid_key", params_.photon_lanes, push);
+    }
     const std::uint32_t radix_at = paths_at + 2 * params_.photons + 1;
     for (std::uint32_t digit = 0; digit < digits_; ++digit) {
         gpu::Launch push = plain;
@@ -280,18 +319,20 @@ bool Integrator::unblock(Pass to) {
         was_blocked = true;
 
         Pass from = Pass::gather;
-        std::uint32_t first_round = 1;
+        std::uint32_t first_round = blocked & PASS_LEVELS ? 0 : 1;
         if (blocked & PASS_EYE) from = Pass::eye;
         else if (blocked & (PASS_PHOTON | PASS_CAPACITY)) from = Pass::photon;
+        else if (blocked & PASS_LEVELS) from = Pass::grid;
         else if (blocked & PASS_KNN) from = Pass::knn;
         if (blocked & PASS_CAPACITY) {
             params_.photon_capacity = std::max(params_.photon_capacity, status.capacity) * 5 / 4;
             allocate_photons();
             first_round = 0;  // the paths start again and are the same
         }
+        if (blocked & PASS_LEVELS) add_levels(status.levels);
         commands_.begin();
         iterate(completed_, from, to, first_round);
-        if (!(blocked & PASS_CAPACITY) || (blocked & PASS_PHOTON)) rounds_[from] *= 2;
+        if (!(blocked & (PASS_CAPACITY | PASS_LEVELS)) || (blocked & PASS_PHOTON)) rounds_[from] *= 2;
         finish();
     }
 }

@@ -85,8 +85,10 @@ private:
     enum class Pass { eye, photon, grid, knn, gather, update };
 
     void allocate_photons();
-    void compile(const Settings& settings, const Bvh& bvh, std::uint32_t features);
-    void warm_up();
+    void allocate_sorted();
+    void add_levels(std::uint32_t levels);
+    void compile();
+    void warm_up(const std::vector<std::string>& kernels);
     void iterate(std::uint32_t iteration, Pass from, Pass to, std::uint32_t first_round);
     void launch(const std::string& kernel, std::uint64_t invocations, const gpu::Launch& push);
     void launch_rounds(const std::string& kernel, std::uint64_t invocations, Pass pass, std::uint32_t iteration,
@@ -102,6 +104,7 @@ private:
     Commands commands_;
     gpu::Params params_{};
     SceneBuffers buffers_;
+    Specialization specialization_;
     std::map<std::string, Kernel> kernels_;
     std::map<Pass, std::uint32_t> rounds_;
     std::vector<PassReport> passes_;

@@ -2,29 +2,22 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
+#include <cstddef>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
 #include "core/fnv1a.h"
+#include "render/grid.h"
 #include "render/integrator.h"
 #include "shared/bindings.h"
 
 namespace vkcppm {
 namespace {
 
-/// What an iteration leaves to the next, in the order of save(); of the status the histogram of radii alone.
+/// What an iteration leaves to the next, in the order of save(), after what the status holds for the plan of the grid.
+constexpr std::size_t planned_from = offsetof(gpu::Status, photons);
 constexpr std::uint32_t carried[] = {BIND_PIXELS, BIND_TALLY, BIND_MOMENTS, BIND_FILM, BIND_AOVS, BIND_GRID};
-
-/// True where kernels stay within their table of cells.
-bool fits(const gpu::Grid& grid, const gpu::Params& params) {
-    const double cells = double(grid.dims.x) * double(grid.dims.y) * double(grid.dims.z);
-    const bool dense = grid.dims.w == 0;
-    return std::isfinite(grid.cell) && grid.cell > 0.0f && std::isfinite(grid.inverse_cell) && cells >= 1.0 &&
-           grid.entries >= 1 && grid.entries <= params.cells &&
-           (dense ? cells <= double(grid.entries) : grid.dims.w == params.cells - 1 && grid.entries == params.cells);
-}
 
 class Hasher {
 public:
@@ -46,7 +39,7 @@ std::vector<std::byte> Integrator::save() const {
         state.insert(state.end(), bytes.begin(), bytes.end());
     };
     const gpu::Status status = buffers_.at(BIND_STATUS).download_value<gpu::Status>();
-    append(std::as_bytes(std::span(status.radius_histogram)));
+    append(std::as_bytes(std::span(&status, 1)).subspan(planned_from));
     for (const std::uint32_t binding : carried) {
         const Buffer& buffer = buffers_.at(binding);
         append(buffer.download<std::byte>(buffer.bytes()));
@@ -56,7 +49,7 @@ std::vector<std::byte> Integrator::save() const {
 
 void Integrator::restore(const Report& report, std::span<const std::byte> state) {
     gpu::Status status{};
-    std::uint64_t bytes = sizeof(status.radius_histogram);
+    std::uint64_t bytes = sizeof(status) - planned_from;
     for (const std::uint32_t binding : carried) bytes += buffers_.at(binding).bytes();
     if (state.size() != bytes) {
         throw Error(ExitCode::bad_scene,
@@ -67,16 +60,16 @@ void Integrator::restore(const Report& report, std::span<const std::byte> state)
         state = state.subspan(count);
         return taken;
     };
-    const auto histogram = take(sizeof(status.radius_histogram));
-    std::copy(histogram.begin(), histogram.end(), reinterpret_cast<std::byte*>(status.radius_histogram));
+    std::ranges::copy(take(sizeof(status) - planned_from), reinterpret_cast<std::byte*>(&status) + planned_from);
     for (const std::uint32_t binding : carried) buffer(binding).upload(take(buffer(binding).bytes()));
     const auto grid = buffer(BIND_GRID).download_value<gpu::Grid>();
     if (!fits(grid, params_)) {
         throw Error(ExitCode::bad_scene,
-                    fmt::format("the checkpoint's grid of {} x {} x {} cells in {} entries is not one "
-                                "of this render, which has room for {}",
-                                grid.dims.x, grid.dims.y, grid.dims.z, grid.entries, params_.cells));
+                    fmt::format("the checkpoint's grid of {} levels in {} entries is not one of this render, which has "
+                                "room for {} in {}",
+                                grid.levels, grid.entries, params_.most_levels, params_.cells));
     }
+    if (grid.levels > params_.grid_levels) add_levels(grid.levels);
     status.completed = std::uint32_t(report.iterations);
     buffer(BIND_STATUS).upload_value(status);
     completed_ = status.completed;
@@ -147,7 +140,9 @@ std::uint64_t Integrator::hash_of(Pass pass) const {
         case Pass::update: {
             hasher.add(buffers_.at(BIND_FILM));
             add_statistics();
-            hasher.add(buffers_.at(BIND_STATUS).download_value<gpu::Status>().radius_histogram);
+            const auto status = buffers_.at(BIND_STATUS).download_value<gpu::Status>();
+            hasher.add(status.radius_histogram);
+            hasher.add(status.photon_histogram);
             break;
         }
     }

@@ -278,6 +278,11 @@ std::uint32_t Device::busy_lanes() const {
     return 512 * std::max(1u, std::thread::hardware_concurrency());
 }
 
+std::uint64_t Device::largest_texels() const {
+    const vk::PhysicalDeviceLimits limits = impl_->physical->getProperties().limits;
+    return std::min<std::uint64_t>(limits.maxStorageBufferRange, std::uint64_t(limits.maxTexelBufferElements) * 16);
+}
+
 bool Device::reuse_pipelines(std::span<const std::byte> data) {
     // Drivers should look themselves, and some crash.
     VkPipelineCacheHeaderVersionOne header{};

@@ -47,6 +47,8 @@ public:
     std::uint32_t step_budget() const;
     /// Invocations that keep it busy: work with a choice is cut into about as many.
     std::uint32_t busy_lanes() const;
+    /// Bytes of the largest buffer of texels of 16 bytes.
+    std::uint64_t largest_texels() const;
     /// Bytes of buffers alive now, and at most so far.
     std::uint64_t allocated_bytes() const;
     std::uint64_t peak_bytes() const;

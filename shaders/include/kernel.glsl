@@ -14,6 +14,7 @@ layout(constant_id = SPEC_SECTORS) const uint SECTORS = 6;
 layout(constant_id = SPEC_FEATURES) const uint FEATURES = 0xffffffffu;
 layout(constant_id = SPEC_DIGIT_BITS) const uint DIGIT_BITS = 7;
 layout(constant_id = SPEC_NODE_BITS) const uint NODE_BITS = 20;
+layout(constant_id = SPEC_LEVELS) const uint LEVELS = GRID_LEVELS;
 
 layout(push_constant, scalar) uniform LaunchBlock { Launch launch; };
 layout(binding = BIND_PARAMS, scalar) uniform ParamsBlock { Params params; };

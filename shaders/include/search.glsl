@@ -8,13 +8,15 @@ layout(binding = BIND_CURSOR, scalar) buffer CursorBlock { Cursor cursors[]; };
 const float NORMAL_AGREEMENT = 0.1;
 
 struct CellBox {
+    GridLevel level;
     ivec3 low;
     ivec3 high;
 };
 
-CellBox cell_box(vec3 centre, float radius) {
+CellBox cell_box(GridLevel level, vec3 centre, float radius) {
     float reach = radius * 1.0001;  // beyond the rounding of the distance test
-    return CellBox(clamp_cell(cell_of(centre - reach)), clamp_cell(cell_of(centre + reach)));
+    return CellBox(level, clamp_cell(level, cell_of(level, centre - reach)),
+                   clamp_cell(level, cell_of(level, centre + reach)));
 }
 
 // A walk goes through the box segment by segment: z, then y, then runs along x, each a range of sorted photons.
@@ -29,17 +31,17 @@ struct Walk {
 Walk walk_segment(CellBox box, ivec3 cell) {
     Walk walk;
     walk.cell = cell;
-    walk.last_x = grid.dims.w == 0u ? box.high.x : min(box.high.x, cell.x | (HASH_RUN - 1));
-    int start = int(cell_index(cell));
+    walk.last_x = box.level.dims.w == 0u ? box.high.x : min(box.high.x, cell.x | (HASH_RUN - 1));
+    int start = int(cell_index(box.level, cell));
     walk.first = texelFetch(counters, start).x;
     walk.last = texelFetch(counters, start + walk.last_x - cell.x + 1).x;
     return walk;
 }
 
 // A bucket of the hash holds photons of other cells too: only those of this segment count here.
-bool in_segment(Walk walk, vec3 position) {
-    ivec3 cell = clamp_cell(cell_of(position));
-    return grid.dims.w == 0u || (cell.yz == walk.cell.yz && cell.x / HASH_RUN == walk.cell.x / HASH_RUN);
+bool in_segment(GridLevel level, Walk walk, vec3 position) {
+    ivec3 cell = clamp_cell(level, cell_of(level, position));
+    return level.dims.w == 0u || (cell.yz == walk.cell.yz && cell.x / HASH_RUN == walk.cell.x / HASH_RUN);
 }
 
 // Both normals on the side they were seen from; photons on the other side count too where a rough surface transmits.
@@ -52,11 +54,12 @@ bool accepted_side(uint packed, vec3 normal, bool both_sides) {
 }
 
 // Whether a pixel accepts the photon of a segment: within reach2 of its position, on its side. squared: the distance.
-bool accepts(Walk walk, uvec4 photon, vec3 position, float reach2, vec3 normal, bool both_sides, out float squared) {
+bool accepts(GridLevel level, Walk walk, uvec4 photon, vec3 position, float reach2, vec3 normal, bool both_sides,
+             out float squared) {
     vec3 place = uintBitsToFloat(photon.xyz);
     vec3 offset = place - position;
     squared = dot(offset, offset);
-    return squared < reach2 && accepted_side(photon.w, normal, both_sides) && in_segment(walk, place);
+    return squared < reach2 && accepted_side(photon.w, normal, both_sides) && in_segment(level, walk, place);
 }
 
 // Loops over the segments of a box from `cursor` on while `steps` last and ROOM holds: cursor then says where to go on.

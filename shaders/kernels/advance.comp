@@ -1,5 +1,5 @@
 #version 460
-// One invocation: the iteration is complete. Reads the number of photons; writes status.completed, status.stored.
+// One invocation: the iteration is complete. Reads the number of photons; writes status.completed, .photons, .stored.
 #include "include/kernel.glsl"
 #include "include/counters.glsl"
 
@@ -8,5 +8,6 @@ layout(binding = BIND_COUNTERS, scalar) readonly buffer CounterBlock { uint coun
 void main() {
     if (blocked(0u) || invocation() != 0u) return;
     status.completed = launch.iteration + 1u;
-    status.stored += counters[PHOTON_TOTAL];
+    status.photons = counters[PHOTON_TOTAL];
+    status.stored += status.photons;
 }

@@ -75,7 +75,7 @@ void main() {
     begin(pixel);
     int steps = int(params.step_budget);
     float reach2 = search_radius2(pixel, radius2);
-    CellBox box = cell_box(position, sqrt(reach2));
+    CellBox box = cell_box(level_for(sqrt(reach2)), position, sqrt(reach2));
     Walk walk;
     uvec2 queue[QUEUE + 1u];  // first photon, marks; one more, for a store of nothing when it is full
     while (!walked(cursor, box) && steps > 0) {
@@ -85,7 +85,7 @@ void main() {
             for (uint bit = 1u; walk.first < walk.last && steps > 0 && bit != 0u; ++walk.first, --steps, bit <<= 1u) {
                 uvec4 photon = texelFetch(sorted, int(walk.first));
                 float squared;
-                run.y |= accepts(walk, photon, position, reach2, normal, both_sides, squared) ? bit : 0u;
+                run.y |= accepts(box.level, walk, photon, position, reach2, normal, both_sides, squared) ? bit : 0u;
             }
             // A store by all lanes: a branch for each would guess wrong.
             queue[queued] = run;

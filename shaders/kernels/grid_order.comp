@@ -16,7 +16,7 @@ layout(binding = BIND_COUNTERS, scalar) readonly buffer CounterBlock { uint coun
 void main() {
     if (blocked(0u)) return;
     bool in_a = sort_passes() % 2u == 0u;
-    uint total = counters[PHOTON_TOTAL];
+    uint total = SORTED_TOTAL;
     uint stride = gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_WorkGroupSize.x;
     for (uint i = invocation(); i < total; i += stride) {
         uint slot = in_a ? pairs_a[i].y : pairs_b[i].y;

@@ -57,7 +57,7 @@ void main() {
         }
         if ((FEATURES & FEATURE_SPLIT) != 0u) return;
         // A pixel that failed before will hardly find k photons nearby: it looks through its whole disc at once.
-        kept = Gathered(vec3(-1.0, 0.0, first ? min(cap, grid.cell) : cap), 0u, vec3(0.0));
+        kept = Gathered(vec3(-1.0, 0.0, first ? min(cap, grid.cell[0]) : cap), 0u, vec3(0.0));
     } else {
         cursor = cursors[pixel];
         if (cursor.cell.x == CURSOR_DONE) return;
@@ -73,13 +73,13 @@ void main() {
     // Out of steps at its head as well as by the break: of a loop with one exit, a break that lanes take on different
     // trips, Mesa 22.3.6 leaves every lane with the values of the last trip, its own or not.
     while (steps > 0) {
-        box = cell_box(position, kept.flux.z);
+        box = cell_box(level_for(kept.flux.z), position, kept.flux.z);
         float reach2 = kept.flux.z * kept.flux.z;
         FOR_SEGMENTS(box, cursor, walk, steps, true, {
             for (; walk.first < walk.last && steps > 0; ++walk.first, --steps) {
                 uvec4 photon = texelFetch(sorted, int(walk.first));
                 float squared;
-                if (accepts(walk, photon, position, reach2, normal, both_sides, squared)) {
+                if (accepts(box.level, walk, photon, position, reach2, normal, both_sides, squared)) {
                     steps -= keep(kept, squared, pixel);
                 }
             }

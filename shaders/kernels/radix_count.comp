@@ -16,7 +16,7 @@ void main() {
     if (lane >= params.sort_lanes || launch.offset >= sort_passes() * DIGIT_BITS || blocked(0u)) return;
     const uint digits = 1u << DIGIT_BITS;
     for (uint digit = 0u; digit < digits; ++digit) counters[RADIX_COUNTS + digit * params.sort_lanes + lane] = 0u;
-    uint total = counters[PHOTON_TOTAL];
+    uint total = SORTED_TOTAL;
     uint size = (total + params.sort_lanes - 1u) / params.sort_lanes;
     uint begin = min(lane * size, total);
     uint end = min(begin + size, total);

@@ -13,7 +13,7 @@ void main() {
     uint lane = invocation();
     if (lane >= params.sort_lanes || launch.offset >= sort_passes() * DIGIT_BITS || blocked(0u)) return;
     const uint digits = 1u << DIGIT_BITS;
-    uint total = counters[PHOTON_TOTAL];
+    uint total = SORTED_TOTAL;
     uint size = (total + params.sort_lanes - 1u) / params.sort_lanes;
     uint begin = min(lane * size, total);
     uint end = min(begin + size, total);

@@ -1,7 +1,7 @@
 #version 460
 // One invocation a pixel: adds the iteration's estimate to the film with the radius that gathered it, then lets the
 // estimator decide the next radius. Reads hits, gathered; writes film, pixels, tally and, where launch.offset is 1,
-// the histogram of radii from which the next grid is planned. O(rings x sectors).
+// the histograms by radius from which the next grid is planned. O(rings x sectors).
 // A contribution that is not finite is dropped and counted in status.invalid.
 #include "include/kernel.glsl"
 #include "include/rng.glsl"
@@ -41,7 +41,10 @@ void main() {
         pixels[pixel] = state;
         if (launch.offset == 1u && diffuse) {
             int bin = int(floor(log2(state.radius2))) + 48;  // 2 (log2 R + 24)
-            atomicAdd(status.radius_histogram[clamp(bin, 0, RADIUS_BINS - 1)], 1u);
+            bin = clamp(bin, 0, RADIUS_BINS - 1);
+            atomicAdd(status.radius_histogram[bin], 1u);
+            uint before = atomicAdd(status.photon_histogram[bin], sum.count);
+            if (before + sum.count < before) atomicAdd(status.photon_histogram_high[bin], 1u);
         }
     }
 }

@@ -29,6 +29,7 @@ using uint = std::uint32_t;
 #define SPEC_FEATURES 5   // FEATURE_* of this scene
 #define SPEC_DIGIT_BITS 6 // of one radix sort pass
 #define SPEC_NODE_BITS 7  // of the largest index of a node of this scene's BVH
+#define SPEC_LEVELS 8     // of the grid that there is room for
 
 // Features of a scene: a pipeline holds only what its scene needs, and buffers that only a feature reads are empty
 // without it.
@@ -329,13 +330,19 @@ struct Cursor {
 #define CURSOR_START 0xffffffffu
 #define CURSOR_DONE 0xfffffffeu
 
-// The grid in force.
+#define GRID_LEVELS 4      // at most
+
+// The grid in force. Every level has cells of its own size and holds all photons: discs look at those of the level whose
+// cells suit them.
 struct Grid {
     vec3 origin;
-    float inverse_cell;
-    uvec4 dims;        // cells an axis; w: 0 dense rows, else mask of the hash table
-    float cell;
-    uint entries;      // of the table of cell starts, in use: at most params.cells
+    uint levels;                      // in use, from the finest on
+    uvec4 dims[GRID_LEVELS];          // cells an axis; w: 0 dense rows, else mask of the hash table
+    float cell[GRID_LEVELS];          // side
+    float inverse_cell[GRID_LEVELS];
+    float reach[GRID_LEVELS];         // largest radius that looks here; of the last level in use, and beyond: the largest float
+    uint first[GRID_LEVELS];          // its first entry of the table of cell starts
+    uint entries;                     // of that table, in use: at most params.cells
 };
 
 // Passes that can run out of their step budget.
@@ -345,6 +352,7 @@ struct Grid {
 #define PASS_GATHER 8u
 #define PASS_TRACE 32u     // of the path tracer
 #define PASS_CAPACITY 16u  // a lane stored more photons than it has slots
+#define PASS_LEVELS 64u    // the grid is to have more levels than there is room for
 
 #define RADIUS_BINS 64     // histogram of log2 R: bin = 2 * (log2 R + 24), clamped
 
@@ -357,7 +365,12 @@ struct Status {
     uint rays;         // traced since the host last cleared it, low word
     uint stored;       // photons stored since the host last cleared it
     uint rays_high;
-    uint radius_histogram[RADIUS_BINS];
+    uint levels;       // that the grid is to have
+    // From here on what the next plan of the grid is made from, and so what a checkpoint holds.
+    uint photons;      // stored in the last iteration
+    uint radius_histogram[RADIUS_BINS];     // pixels that gather
+    uint photon_histogram[RADIUS_BINS];     // photons in their discs, low word
+    uint photon_histogram_high[RADIUS_BINS];
 };
 
 // Per render.
@@ -397,6 +410,8 @@ struct Params {
     float k;
     float beta;
     uint cells;            // capacity of the cell table, a power of two
+    uint grid_levels;      // that there is room for now
+    uint most_levels;      //   and can be
     uint sort_lanes;       // columns of the radix histogram
     uint scan_blocks;      // a multiple of the work group
     float threshold[MAX_RINGS];          // chi-squared quantile for the disc of the first i + 1 rings
@@ -410,7 +425,7 @@ struct Launch {
     uint round;        // of a resumable pass
     uint last_round;   // 1: unfinished work blocks the passes that follow
     uint offset;       // scan: first element; radix: shift of the digit; update: 1 counts the radii
-    uint count;        // scan: elements; path: paths a pixel; radix: 0 reads pairs[0], 1 reads pairs[1]
+    uint count;        // scan: elements; path: paths a pixel; grid_key: level; radix: 0 reads pairs[0], 1 reads pairs[1]
 };
 
 #ifdef __cplusplus

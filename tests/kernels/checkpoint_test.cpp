@@ -97,16 +97,19 @@ TEST_F(CheckpointState, OfAnotherSizeOrWithAnImpossibleGridIsRefused) {
     }
     // The grid stands last: every cell of a larger one would be looked up past the end of the table.
     const auto grid = rig.integrator.buffer(BIND_GRID).download_value<gpu::Grid>();
-    gpu::Grid wide = grid, hashed = grid, empty = grid, flat = grid;
-    wide.dims.x *= 1000;
-    hashed.dims.w = 0xffffffffu;
+    gpu::Grid wide = grid, hashed = grid, empty = grid, flat = grid, deep = grid, shifted = grid;
+    wide.dims[0].x *= 1000;
+    hashed.dims[0].w = 0xffffffffu;
     empty.entries = 0;
-    flat.cell = 0.0f;
-    for (const gpu::Grid& wrong : {wide, hashed, empty, flat}) {
+    flat.cell[0] = 0.0f;
+    deep.levels = GRID_LEVELS + 1;
+    shifted.first[0] = 1;
+    for (const gpu::Grid& wrong : {wide, hashed, empty, flat, deep, shifted}) {
         std::vector<std::byte> bad = good;
         std::memcpy(bad.data() + bad.size() - rig.integrator.buffer(BIND_GRID).bytes(), &wrong, sizeof(wrong));
         const auto error = thrown_by([&] { rig.integrator.restore(report_of(rig), bad); });
-        ASSERT_TRUE(error) << wrong.dims.x << " x " << wrong.dims.y << " x " << wrong.dims.z << ", " << wrong.entries;
+        ASSERT_TRUE(error) << wrong.dims[0].x << " x " << wrong.dims[0].y << " x " << wrong.dims[0].z << ", "
+                           << wrong.entries << ", " << wrong.levels << " levels";
         EXPECT_EQ(error->code(), ExitCode::bad_scene);
     }
     rig.integrator.restore(report_of(rig), good);

@@ -13,6 +13,7 @@
 
 #include "reference/gather.h"
 #include "reference/octahedral.h"
+#include "support/disc_field.h"
 #include "support/gpu.h"
 #include "support/rig.h"
 #include "support/shapes.h"
@@ -110,7 +111,7 @@ protected:
         if (cells > 0) params.cells = cells;
         rig.integrator.set_params(params);
         rig.integrator.run(1);
-        const bool hashed = rig.integrator.buffer(BIND_GRID).download_value<gpu::Grid>().dims.w != 0;
+        const bool hashed = rig.integrator.buffer(BIND_GRID).download_value<gpu::Grid>().dims[0].w != 0;
         ASSERT_EQ(hashed, cells > 0);
     }
 };
@@ -314,6 +315,61 @@ TEST_F(Gather, AFoldedTallyAddsOppositeSectors) {
         }
     }
     EXPECT_GT(sum, 20 * p) << "too few photons to mean anything";
+}
+
+TEST_F(Gather, DiscsOfAllSizesLookAtLevelsOfTheGridAndFindTheirPhotons) {
+    const Spread spread{.photons = 8192};
+    std::mt19937 random(5);
+    const auto number = [&] { return std::uniform_real_distribution<double>()(random); };
+    std::vector<Disc> discs;
+    std::vector<glm::dvec2> places;
+    while (discs.size() < 64 * 64) {
+        const double u = number(), v = number();
+        discs.push_back(spread.disc(u, v));
+        // Some that look at another level than their neighbours.
+        if (discs.size() % 16 == 0) discs.back().radius *= std::exp2(8.0 * number() - 4.0);
+    }
+    while (places.size() < spread.photons) {
+        const double u = number(), v = number();
+        places.push_back(spread.photon(u, v));
+    }
+    DiscField field(device(), settings_of("cppm", spread.photons), discs, places);
+    field.iterate();
+    ASSERT_EQ(field.grid().levels, 1u) << "the first grid knows no radii";
+    const auto of_one_level = field.gathered();
+    field.iterate();
+    const gpu::Grid grid = field.grid();
+    ASSERT_GE(grid.levels, 3u);
+    const auto of_levels = field.gathered();
+    std::vector<std::size_t> looking(grid.levels);
+    std::size_t found = 0, doubts = 0;
+    for (std::size_t i = 0; i < discs.size(); ++i) {
+        const double radius2 = field.states()[i].radius2;
+        std::uint32_t count = 0, on_edge = 0;
+        for (const gpu::Photon& photon : field.photons()) {
+            const glm::dvec3 offset = glm::dvec3(photon.position) - glm::dvec3(field.hits()[i].position);
+            const double q = glm::dot(offset, offset) / radius2;
+            count += q < 1.0 ? 1 : 0;
+            on_edge += std::abs(q - 1.0) <= 1e-5 ? 1 : 0;
+        }
+        std::uint32_t level = 0;
+        while (std::sqrt(radius2) > grid.reach[level]) ++level;
+        ++looking.at(level);
+        const std::string disc = fmt::format("disc {} of radius {:.6g} on level {} of cells {:.6g}", i,
+                                             std::sqrt(radius2), level, grid.cell[level]);
+        ASSERT_EQ(of_levels[i].count, of_one_level[i].count) << disc;
+        ASSERT_NEAR(of_levels[i].flux.x - of_levels[i].excess.x, of_one_level[i].flux.x - of_one_level[i].excess.x,
+                    1e-6 * of_one_level[i].flux.x)
+            << disc;
+        found += of_levels[i].count;
+        doubts += on_edge;
+        if (on_edge == 0) {
+            ASSERT_EQ(of_levels[i].count, count) << disc;
+        }
+    }
+    EXPECT_GT(found, 5 * discs.size());
+    EXPECT_LT(doubts, discs.size() / 20);
+    for (std::uint32_t level = 0; level < grid.levels; ++level) EXPECT_GT(looking[level], 100u) << "level " << level;
 }
 
 }  // namespace

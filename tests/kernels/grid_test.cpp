@@ -25,22 +25,23 @@ Settings small(std::uint32_t photons) {
 }
 
 /// The cell of a position, its box padded by none: out of range cells belong to the nearest.
-glm::ivec3 cell_of(const gpu::Grid& grid, const glm::vec3& position) {
-    const glm::vec3 place = (position - grid.origin) * grid.inverse_cell;
+glm::ivec3 cell_of(const gpu::Grid& grid, std::uint32_t level, const glm::vec3& position) {
+    const glm::vec3 place = (position - grid.origin) * grid.inverse_cell[level];
     glm::ivec3 cell;
     for (int axis = 0; axis < 3; ++axis) {
-        cell[axis] = std::clamp(int(std::floor(place[axis])), 0, int(grid.dims[axis]) - 1);
+        cell[axis] = std::clamp(int(std::floor(place[axis])), 0, int(grid.dims[level][axis]) - 1);
     }
     return cell;
 }
 
 /// Rows along x one after the other; or runs of eight cells along x hashed as by Teschner et al. 2003.
-std::uint32_t entry_of(const gpu::Grid& grid, const glm::ivec3& cell) {
+std::uint32_t entry_of(const gpu::Grid& grid, std::uint32_t level, const glm::ivec3& cell) {
     const glm::uvec3 c(cell);
-    if (grid.dims.w == 0) return (c.z * grid.dims.y + c.y) * grid.dims.x + c.x;
+    const glm::uvec4& dims = grid.dims[level];
+    if (dims.w == 0) return grid.first[level] + (c.z * dims.y + c.y) * dims.x + c.x;
     std::uint32_t hash = (c.x / 8 * 73856093u) ^ (c.y * 19349663u) ^ (c.z * 83492791u);
     hash ^= hash >> 15;
-    return ((hash * 8) & grid.dims.w) + c.x % 8;
+    return grid.first[level] + ((hash * 8) & dims.w) + c.x % 8;
 }
 
 class GridOrder : public GpuTest {
@@ -53,18 +54,24 @@ protected:
         rig.integrator.run(1);
         params = rig.integrator.params();
         const gpu::Grid grid = rig.integrator.buffer(BIND_GRID).download_value<gpu::Grid>();
-        ASSERT_EQ(grid.dims.w != 0, hashed) << grid.dims.x << " x " << grid.dims.y << " x " << grid.dims.z
-                                            << " cells of " << grid.cell << ", table of " << params.cells;
+        ASSERT_EQ(grid.levels, 1u);
+        const glm::uvec4& dims = grid.dims[0];
+        ASSERT_EQ(dims.w != 0, hashed) << dims.x << " x " << dims.y << " x " << dims.z << " cells of " << grid.cell[0]
+                                       << ", table of " << params.cells;
         if (hashed) {
-            EXPECT_EQ(grid.dims.w, params.cells - 1);
+            EXPECT_EQ(dims.w, params.cells - 1);
         }
-        ASSERT_EQ(grid.entries, hashed ? params.cells : grid.dims.x * grid.dims.y * grid.dims.z);
+        ASSERT_EQ(grid.first[0], 0u);
+        ASSERT_EQ(grid.entries, hashed ? params.cells : dims.x * dims.y * dims.z);
         ASSERT_LE(grid.entries, params.cells);
         for (int axis = 0; axis < 3; ++axis) {
-            EXPECT_GE(grid.origin[axis] + float(grid.dims[axis]) * grid.cell, params.bounds_high[axis])
-                << "axis " << axis;
+            EXPECT_GE(grid.origin[axis] + float(dims[axis]) * grid.cell[0], params.bounds_high[axis]) << "axis " << axis;
         }
+        expect_order(rig, grid);
+    }
 
+    /// Compares the sorted photons and the table of cell starts with the host's.
+    static void expect_order(Rig& rig, const gpu::Grid& grid) {
         // Path by path and bounce by bounce.
         const auto photons = rig.all<gpu::Photon>(BIND_PHOTONS);
         const auto fluxes = rig.all<gpu::PhotonFlux>(BIND_PHOTON_FLUX);
@@ -75,7 +82,9 @@ protected:
         std::vector<Entry> entries;
         for (const StoredPath& path : rig.stored_paths()) {
             for (std::size_t slot = path.slot; slot < path.slot + path.count; ++slot) {
-                entries.push_back({entry_of(grid, cell_of(grid, photons[slot].position)), slot});
+                for (std::uint32_t level = 0; level < grid.levels; ++level) {
+                    entries.push_back({entry_of(grid, level, cell_of(grid, level, photons[slot].position)), slot});
+                }
             }
         }
         ASSERT_GT(entries.size(), rig.settings.photons);

@@ -24,6 +24,7 @@ void bump(inout uvec4 v) { for (int c = 0; c < 4; ++c) v[c] += ++ordinal; }
 void bump(inout uint a[2]) { for (int i = 0; i < 2; ++i) a[i] += ++ordinal; }
 void bump(inout uint a[3]) { for (int i = 0; i < 3; ++i) a[i] += ++ordinal; }
 void bump(inout uint a[4]) { for (int i = 0; i < 4; ++i) a[i] += ++ordinal; }
+void bump(inout uvec4 a[GRID_LEVELS]) { for (int i = 0; i < GRID_LEVELS; ++i) bump(a[i]); }
 void bump(inout uint a[TEXTURE_COUNT]) { for (int i = 0; i < TEXTURE_COUNT; ++i) a[i] += ++ordinal; }
 void bump(inout uint a[RADIUS_BINS]) { for (int i = 0; i < RADIUS_BINS; ++i) a[i] += ++ordinal; }
 void bump(inout float a[MAX_RINGS]) { for (int i = 0; i < MAX_RINGS; ++i) a[i] += float(++ordinal); }
