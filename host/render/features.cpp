@@ -99,7 +99,7 @@ std::vector<Feature> features_of(const Scene& scene, const std::vector<SurfaceTr
     collect.light(FEATURE_DIRECTIONAL_LIGHTS, "directional lights", Kind::directional);
     if (!flat.environment.empty()) {
         collect.add(FEATURE_ENVIRONMENT, "environment",
-                    fmt::format("a map of {}x{}", flat.environment_size.width, flat.environment_size.height));
+                    fmt::format("a map of {}x{}", scene.environment->size.width, scene.environment->size.height));
     }
     return collect.take();
 }

@@ -30,9 +30,9 @@ struct FlatScene {
     std::vector<gpu::Light> lights;                // alias table; empty where nothing emits
     std::uint32_t punctual_lights = 0;             // the first so many of them
     double light_power = 0.0;  // of all, mean channel, W (frame-scaled): about, where lights have textures
-    Extent environment_size;
+    Extent environment_size;                       // of the map, cut where its pixels were coarse
     std::vector<glm::vec4> environment;            // [pixels] radiance, keep of its alias table
-    std::vector<std::uint32_t> environment_alias;  // [pixels]
+    std::vector<glm::uvec2> environment_alias;     // [pixels] its other entry; environment_area, as bits
     std::vector<Feature> features;                 // what the scene asks of the kernels
     double area = 0.0;                             // of all triangles, frame units squared
     double radius = 0.0;                           // of the bounding sphere about the origin, frame units

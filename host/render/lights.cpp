@@ -1,6 +1,7 @@
 #include "render/lights.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -16,11 +17,11 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double cover = 1.001;              // disc of parallel light, in radii of the scene
 constexpr std::uint32_t max_cut = 6;         // a textured emitter is cut in four at most this often
 constexpr double texels_a_part = 4.0;        // parts that are smaller are not cut
 constexpr int part_samples = 4;              // of a part along either side, to weigh it
 constexpr std::size_t max_parts = 1u << 20;  // of all textured emitters
+constexpr Extent least_map{128, 64};         // pixels of an environment: smaller ones are cut
 
 double mean(const glm::dvec3& v) {
     return (v.x + v.y + v.z) / 3.0;
@@ -29,6 +30,17 @@ double mean(const glm::dvec3& v) {
 /// 1 - cos of an angle.
 double versine(double angle) {
     return 2.0 * std::sin(0.5 * angle) * std::sin(0.5 * angle);
+}
+
+/// Areas of the faces of the scene's bounds across x, y and z, which are padded: those of a flat scene are not 0.
+glm::dvec3 face_areas(const FlatScene& flat) {
+    const glm::dvec3 extent = glm::dvec3(flat.high) - glm::dvec3(flat.low);
+    return {extent.y * extent.z, extent.z * extent.x, extent.x * extent.y};
+}
+
+/// The area by which parallel light enters where the box shows that much of itself: entry_area of the kernels.
+double entry_area(const FlatScene& flat, double box) {
+    return std::min(box, pi * std::pow(bounds_radius(flat), 2));
 }
 
 /// Alias table (Walker 1974, Vose 1991): entry i is kept with probability keep[i], else alias[i] stands for it; then
@@ -289,10 +301,8 @@ void add_punctual_lights(const Scene& scene, const FlatScene& flat, std::vector<
             }
             case PunctualLight::Kind::directional: {
                 light.kind = LIGHT_DIRECTIONAL;
-                const double radius = flat.radius * cover;
-                light.position = glm::vec3(source.direction * (-1.5 * radius));
-                light.e2 = glm::vec3(radius, 0.0, 0.0);
-                light.power = glm::vec3(intensity * (pi * radius * radius));
+                const double box = glm::dot(face_areas(flat), glm::abs(source.direction));
+                light.power = glm::vec3(intensity * entry_area(flat, box));
                 break;
             }
         }
@@ -300,32 +310,74 @@ void add_punctual_lights(const Scene& scene, const FlatScene& flat, std::vector<
     }
 }
 
+/// The same radiance from the same directions by a map of at least least_map's columns and rows, so that the area by
+/// which light enters varies little over a pixel, and the power of photons with it.
+Environment cut(const Environment& map) {
+    if (map.size.pixels() >= least_map.pixels()) return map;
+    const std::uint32_t columns = (least_map.width + map.size.width - 1) / map.size.width;
+    const std::uint32_t rows = (least_map.height + map.size.height - 1) / map.size.height;
+    Environment fine{{columns * map.size.width, rows * map.size.height}, {}};
+    for (std::uint32_t row = 0; row < fine.size.height; ++row) {
+        for (std::uint32_t column = 0; column < fine.size.width; ++column) {
+            fine.radiance.push_back(map.radiance[std::size_t(row / rows) * map.size.width + column / columns]);
+        }
+    }
+    return fine;
+}
+
+/// Integral of |cos| from 0 to an angle.
+double integral_of_cosine(double angle) {
+    const double half_turns = std::round(angle / pi);
+    return 2.0 * half_turns + std::sin(angle - half_turns * pi);
+}
+
 void add_environment(const Scene& scene, FlatScene& flat, std::vector<WeighedLight>& lights) {
     if (!scene.environment) return;
-    const Environment& map = *scene.environment;
-    std::vector<double> weights;  // mean channel of radiance times solid angle
-    for (std::uint32_t row = 0; row < map.size.height; ++row) {
-        const double band = std::cos(pi * row / map.size.height) - std::cos(pi * (row + 1.0) / map.size.height);
-        for (std::uint32_t column = 0; column < map.size.width; ++column) {
-            const glm::vec3& radiance = map.radiance[std::size_t(row) * map.size.width + column];
-            weights.push_back(mean(glm::dvec3(radiance)) * band * 2.0 * pi / map.size.width);
+    const Environment map = cut(*scene.environment);
+    const auto [columns, rows] = map.size;
+    // The box shows areas . |direction| of itself, integrated here over the directions of a pixel.
+    const glm::dvec3 areas = face_areas(flat);
+    const double width = 2.0 * pi / columns, height = pi / rows;
+    std::vector<double> level;  // [columns] integral over the azimuth of the areas across x and z
+    for (std::uint32_t column = 0; column < columns; ++column) {
+        const double first = width * column - pi, last = width * (column + 1.0) - pi;
+        level.push_back(areas.x * (integral_of_cosine(last) - integral_of_cosine(first)) +
+                        areas.z * (integral_of_cosine(last - 0.5 * pi) - integral_of_cosine(first - 0.5 * pi)));
+    }
+    std::vector<double> weights;  // mean channel of the flux into the scene, about
+    for (std::uint32_t row = 0; row < rows; ++row) {
+        const double top = height * row, middle = height * (row + 0.5), bottom = height * (row + 1.0);
+        // Integrals over the polar angle t of sin t, sin^2 t and |cos t| sin t; differences would cancel near the poles.
+        const double band = 2.0 * std::sin(middle) * std::sin(0.5 * height);
+        const double across = 0.5 * (height - std::sin(height)) + std::sin(height) * std::pow(std::sin(middle), 2);
+        const double upright =
+            0.5 * (std::cos(top) * std::abs(std::cos(top)) - std::cos(bottom) * std::abs(std::cos(bottom)));
+        for (std::uint32_t column = 0; column < columns; ++column) {
+            const double box = (across * level[column] + upright * areas.y * width) / (band * width);
+            const double area = entry_area(flat, box);
+            const glm::vec3& radiance = map.radiance[std::size_t(row) * columns + column];
+            weights.push_back(mean(glm::dvec3(radiance)) * area * band * width);
+            flat.environment_alias.emplace_back(0u, std::bit_cast<std::uint32_t>(float(area)));
         }
     }
     const AliasTable table(weights);
     flat.environment_size = map.size;
-    flat.environment_alias = table.alias;
-    for (std::size_t i = 0; i < weights.size(); ++i) flat.environment.emplace_back(map.radiance[i], table.keep[i]);
-    if (!(table.total > 0.0 && flat.radius > 0.0)) return;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        flat.environment.emplace_back(map.radiance[i], table.keep[i]);
+        flat.environment_alias[i].x = table.alias[i];
+    }
+    if (!(table.total > 0.0)) return;
     gpu::Light light{};
     light.kind = LIGHT_ENVIRONMENT;
-    const double radius = flat.radius * cover;
-    light.e2 = glm::vec3(radius, 0.0, 0.0);
-    const double flux = table.total * pi * radius * radius;
-    light.power = glm::vec3(glm::dvec3(flux));
-    lights.push_back({light, flux});
+    light.power = glm::vec3(glm::dvec3(table.total));
+    lights.push_back({light, table.total});
 }
 
 }  // namespace
+
+double bounds_radius(const FlatScene& flat) {
+    return flat.radius > 0.0 ? flat.radius + 2e-5 : 0.0;
+}
 
 void add_lights(const Scene& scene, FlatScene& flat) {
     std::vector<WeighedLight> lights;

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "render/features.h"
+#include "render/lights.h"
 #include "shared/bindings.h"
 
 namespace vkcppm {
@@ -92,6 +93,7 @@ gpu::Params scene_params(const Device& device, const FlatScene& scene, const Cam
     params.seed = settings.seed;
     params.bounds_low = scene.low;
     params.bounds_high = scene.high;
+    params.bounds_radius = float(bounds_radius(scene));
     params.max_depth = settings.max_depth;
     params.light_count = std::uint32_t(scene.lights.size());
     params.punctual_lights = scene.punctual_lights;

@@ -1,19 +1,29 @@
-// Light from infinitely far away, constant over each pixel of a map. Reads environment and its alias table.
+// Light from infinitely far away, constant over each pixel of a map. Reads environment and its alias table, which is in
+// proportion to the flux into the scene: see entry.glsl.
 #include "include/angle.glsl"
 
 layout(binding = BIND_ENVIRONMENT) uniform samplerBuffer environment;
 layout(binding = BIND_ENVIRONMENT_ALIAS) uniform usamplerBuffer environment_alias;
 
-// Radiance that arrives from `direction`, a unit vector away from the scene.
-vec3 environment_radiance(vec3 direction) {
+// The pixel that is seen in `direction`, a unit vector away from the scene.
+uint environment_pixel(vec3 direction) {
     // The polar angle not by acos: devices know it to 1e-4 only.
     vec2 uv = vec2(0.5 + angle_of(direction.z, direction.x) / (2.0 * PI), angle_of(length(direction.xz), direction.y) / PI);
     uvec2 pixel = min(uvec2(uv * vec2(params.environment)), params.environment - 1u);
-    return texelFetch(environment, int(pixel.y * params.environment.x + pixel.x)).rgb;
+    return pixel.y * params.environment.x + pixel.x;
 }
 
-// A direction away from the scene, in proportion to the mean channel of the radiance, and the colour of its radiance:
-// radiance over mean channel. bits, keep: which pixel; u: where in it.
+// Radiance that arrives from `direction`, a unit vector away from the scene.
+vec3 environment_radiance(vec3 direction) {
+    return texelFetch(environment, int(environment_pixel(direction))).rgb;
+}
+
+// About the mean of entry_area over the directions of a pixel.
+float environment_area(uint pixel) { return uintBitsToFloat(texelFetch(environment_alias, int(2u * pixel + 1u)).x); }
+
+// A direction away from the scene: a pixel in proportion to the mean channel of its flux into the scene, then uniform
+// in its solid angle. Returns radiance over the density, for a flux of 1 of the whole map: the colour of the pixel
+// (radiance over mean channel) over its environment_area. bits, keep: which pixel; u: where in it.
 vec3 sample_environment(uint bits, float keep, vec2 u, out vec3 direction) {
     uint count = params.environment.x * params.environment.y;
     uint high, low;
@@ -21,7 +31,7 @@ vec3 sample_environment(uint bits, float keep, vec2 u, out vec3 direction) {
     uint pixel = high;
     vec4 entry = texelFetch(environment, int(pixel));
     if (keep >= entry.w) {
-        pixel = texelFetch(environment_alias, int(pixel)).x;
+        pixel = texelFetch(environment_alias, int(2u * pixel)).x;
         entry = texelFetch(environment, int(pixel));
     }
     uint row = pixel / params.environment.x;
@@ -32,5 +42,5 @@ vec3 sample_environment(uint bits, float keep, vec2 u, out vec3 direction) {
     float azimuth = 2.0 * PI * ((float(pixel % params.environment.x) + u.x) / float(params.environment.x) - 0.5);
     float r = sqrt(max(0.0, 1.0 - y * y));
     direction = vec3(r * cos(azimuth), y, r * sin(azimuth));
-    return entry.rgb * (3.0 / (entry.r + entry.g + entry.b));
+    return entry.rgb * (3.0 / ((entry.r + entry.g + entry.b) * environment_area(pixel)));
 }

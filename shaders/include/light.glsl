@@ -1,4 +1,6 @@
 // Light sources. Reads lights, and textures of those that have them.
+#include "include/entry.glsl"
+
 layout(binding = BIND_LIGHTS) uniform usamplerBuffer lights;
 
 #define LIGHT_TEXELS 7
@@ -86,11 +88,11 @@ float emitter_density(vec3 emission, bool double_sided) {
     return (emission.r + emission.g + emission.b) * (PI / 3.0) * (double_sided ? 2.0 : 1.0) / params.light_power;
 }
 
-// The density, 1/sr, in which directions to the environment, the last of the lights, are drawn.
+// The density, 1/sr, in which directions to the environment are drawn.
 float environment_density(vec3 away) {
-    vec3 radiance = environment_radiance(away);
-    float radius = uintBitsToFloat(texelFetch(lights, int(params.light_count - 1u) * LIGHT_TEXELS + 2).x);
-    return (radiance.r + radiance.g + radiance.b) * (PI / 3.0) * radius * radius / params.light_power;
+    uint pixel = environment_pixel(away);
+    vec3 radiance = texelFetch(environment, int(pixel)).rgb;
+    return (radiance.r + radiance.g + radiance.b) * environment_area(pixel) / (3.0 * params.light_power);
 }
 
 // One sample of all light that arrives at a point.
@@ -139,20 +141,19 @@ LightSample sample_light(uvec4 bits, vec2 v, vec3 position) {
     }
     if ((FEATURES & FEATURE_DIRECTIONAL_LIGHTS) != 0u && light.kind == LIGHT_DIRECTIONAL) {
         s.direction = -light.e1;
-        s.radiance = light.power / (PI * light.e2.x * light.e2.x);
+        s.radiance = light.power / entry_area(light.e1);
     }
     if ((FEATURES & FEATURE_ENVIRONMENT) != 0u && light.kind == LIGHT_ENVIRONMENT) {
-        vec3 color = sample_environment(bits.z, u.w, v, s.direction);
-        s.radiance = light.power * color / (PI * light.e2.x * light.e2.x);
+        s.radiance = light.power * sample_environment(bits.z, u.w, v, s.direction);
         s.density = environment_density(s.direction);
     }
     return s;
 }
 
-// The start of a light path: lights in proportion to their power, then position and
-// direction in proportion to what the light emits there, so that every path carries the same power at its start (but
-// for what a texture varies within a triangle). bits: four random words; v: four numbers in [0, 1). Returns the
-// kind of the light.
+// The start of a light path: lights in proportion to their power, then position and direction in proportion to what the
+// light emits there, so that every path carries the same power at its start (but for what a texture varies within a
+// triangle, and entry_area within a pixel of the environment). bits: four random words; v: four numbers in [0, 1).
+// Returns the kind of the light.
 uint emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 power) {
     vec4 u = unit_floats(bits);
     uint index;
@@ -180,14 +181,14 @@ uint emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 powe
     }
     if ((FEATURES & FEATURE_DIRECTIONAL_LIGHTS) != 0u && light.kind == LIGHT_DIRECTIONAL) {
         direction = light.e1;
-        origin = light.position + from_frame(light.e1, vec3(light.e2.x * sample_disc(v.xy), 0.0));
+        origin = sample_entry(direction, v.xy);
     }
     if ((FEATURES & FEATURE_ENVIRONMENT) != 0u && light.kind == LIGHT_ENVIRONMENT) {
         vec3 away;
         power *= sample_environment(bits.z, u.w, v.xy, away);
         direction = -away;
-        // From the disc that covers the scene, as a directional light; far enough to lie outside of all.
-        origin = light.position + 1.5 * light.e2.x * away + from_frame(away, vec3(light.e2.x * sample_disc(v.zw), 0.0));
+        power *= entry_area(direction);
+        origin = sample_entry(direction, v.zw);
     }
     return light.kind;
 }

@@ -20,7 +20,7 @@
 #define BIND_TEXTURES 12           // usamplerBuffer, 3 texels a TextureLookup
 #define BIND_TEXELS 13             // usamplerBuffer, 1 word a texel of an image: 8 bits a channel
 #define BIND_ENVIRONMENT 14        // samplerBuffer, 1 texel a pixel: radiance, keep of its alias table
-#define BIND_ENVIRONMENT_ALIAS 15  // usamplerBuffer, 1 word a pixel
+#define BIND_ENVIRONMENT_ALIAS 15  // usamplerBuffer, 2 words a pixel: its other entry, environment_area
 #define BIND_PHOTON_TEXELS 16      // usamplerBuffer over BIND_PHOTONS
 // Storage buffers.
 #define BIND_HIT_POSITION 17

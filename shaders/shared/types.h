@@ -180,13 +180,14 @@ struct TextureLookup {
 // lights only, the last where eye paths sample punctual lights. A path that starts here carries `power`: flux of the
 // light / its probability.
 struct Light {
-    vec3 position;     // triangle: v0; point, spot: position; directional, environment: centre of the scene's disc
+    vec3 position;     // triangle: v0; point, spot: position
     uint kind;         // LIGHT_*
     vec3 e1;           // triangle: edge; spot, directional: unit direction of travel
     float keep;        // alias table: probability to keep this entry
-    vec3 e2;           // triangle: edge; spot: (1 - cos inner, 1 - cos outer, -); directional, environment: (radius of the disc, -, -)
+    vec3 e2;           // triangle: edge; spot: (1 - cos inner, 1 - cos outer, -)
     uint alias_entry;  // alias table: the other entry
-    vec3 power;        // W (frame-scaled); environment: the mean channel alone, times the colour of the pixel drawn
+    vec3 power;        // W (frame-scaled); directional, environment: into the scene; environment: the mean channel
+                       // alone, times the colour of the pixel drawn and entry_area over its mean in the pixel
     uint double_sided; // triangle
     vec2 corner[3];    // textured: barycentrics of its corners in the triangle that it is a part of
     uint triangle;     // textured: that triangle, into the leaf-ordered ones
@@ -389,6 +390,7 @@ struct Params {
     uint photons_per_lane; // paths
     uint photon_lanes;
     uint photon_capacity;  // slots a lane
+    float bounds_radius;   // of a sphere about the origin, padded alike
     uint max_depth;
     uint light_count;
     uint punctual_lights;  // the first so many of them
