@@ -28,7 +28,6 @@ struct FlatScene {
     std::vector<gpu::TextureLookup> textures;
     std::vector<std::uint32_t> texels;             // of all images, a word each
     std::vector<gpu::Light> lights;                // alias table; empty where nothing emits
-    std::uint32_t punctual_lights = 0;             // the first so many of them
     double light_power = 0.0;  // of all, mean channel, W (frame-scaled): about, where lights have textures
     Extent environment_size;                       // of the map, cut where its pixels were coarse
     std::vector<glm::vec4> environment;            // [pixels] radiance, keep of its alias table

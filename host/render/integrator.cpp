@@ -105,6 +105,8 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     buffers_.allocate(BIND_AOVS, "aovs", settings.aovs ? pixels_ * sizeof(gpu::Aovs) : 0, Kind::storage);
     const bool glossy = (features & FEATURE_GLOSS) != 0;
     buffers_.allocate(BIND_HIT_SURFACE, "hit surfaces", glossy ? pixels_ * sizeof(gpu::HitSurface) : 0, Kind::storage);
+    const bool asks = (features & FEATURE_ROUGH) != 0 && (features & FEATURE_SPLIT) == 0;
+    buffers_.allocate(BIND_LIGHT_RAYS, "light rays", asks ? pixels_ * sizeof(gpu::LightRay) : 0, Kind::storage);
     buffers_.allocate(BIND_FILM, "film", pixels_ * sizeof(gpu::Film), Kind::storage);
     buffers_.allocate(BIND_CURSOR, "cursors", pixels_ * sizeof(gpu::Cursor), Kind::storage);
     buffers_.allocate(BIND_NEAREST, "nearest", settings.knn * pixels_ * sizeof(float), Kind::storage);

@@ -284,7 +284,6 @@ void add_punctual_lights(const Scene& scene, const FlatScene& flat, std::vector<
         gpu::Light light{};
         const glm::dvec3 intensity(source.intensity);
         light.position = glm::vec3(flat.frame.point(source.position));
-        light.intensity = glm::vec3(intensity * (source.kind == PunctualLight::Kind::directional ? 1.0 : scale2));
         light.e1 = glm::vec3(source.direction);
         switch (source.kind) {
             case PunctualLight::Kind::point:
@@ -381,12 +380,10 @@ double bounds_radius(const FlatScene& flat) {
 
 void add_lights(const Scene& scene, FlatScene& flat) {
     std::vector<WeighedLight> lights;
-    add_punctual_lights(scene, flat, lights);  // first: eye paths sample these alone
+    add_punctual_lights(scene, flat, lights);
     add_emitters(scene, flat, lights);
     add_environment(scene, flat, lights);
     std::erase_if(lights, [](const WeighedLight& light) { return !(light.weight > 0.0); });
-    flat.punctual_lights = std::uint32_t(std::ranges::count_if(
-        lights, [](const WeighedLight& light) { return light.light.intensity != glm::vec3(0.0f); }));
     if (lights.empty()) return;
     std::vector<double> weights;
     for (const WeighedLight& light : lights) weights.push_back(light.weight);

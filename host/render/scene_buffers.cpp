@@ -96,7 +96,6 @@ gpu::Params scene_params(const Device& device, const FlatScene& scene, const Cam
     params.bounds_radius = float(bounds_radius(scene));
     params.max_depth = settings.max_depth;
     params.light_count = std::uint32_t(scene.lights.size());
-    params.punctual_lights = scene.punctual_lights;
     if (split && splits_near_lamps(scene)) params.near_lights = float(near_lamp * scene.radius);
     params.light_power = float(scene.light_power);
     params.environment = {scene.environment_size.width, scene.environment_size.height};

@@ -8,7 +8,6 @@
 // Width alpha = roughness^2. A lobe of width 0 is a delta: paths follow it and nothing is gathered on it.
 // What lies below a coat is weakened by 1 - F(wo . h) with the half vector of the pair of directions, so that light
 // paths and eye paths see the same surface.
-#define PUNCTUAL_ON_ROUGH ((FEATURES & FEATURE_ROUGH) != 0u && (FEATURES & FEATURE_PUNCTUAL_LIGHTS) != 0u)
 
 struct Bsdf {
     vec3 diffuse;           // albedo
@@ -300,8 +299,8 @@ float gathered_share(float alpha) {
 
 // A rough lobe is sampled in two ways: eye paths follow it, with its own density, and gather photons on it: k of them,
 // which come from anywhere, as cos / pi stands for. Both are weighed by the balance heuristic (Veach and Guibas 1995),
-// so that narrow lobes are left to eye paths and wide ones to photons, smoothly. This is the weight of following; and of
-// sampling a punctual light, which no path meets by following.
+// so that narrow lobes are left to eye paths and wide ones to photons, smoothly. This is the weight of what eye paths
+// find, be it met or asked for.
 float followed_weight(float density, float cosine) {
     return density == DELTA ? 1.0 : density / (density + float(params.knn) * abs(cosine) / PI);
 }

@@ -3,7 +3,7 @@
 
 layout(binding = BIND_LIGHTS) uniform usamplerBuffer lights;
 
-#define LIGHT_TEXELS 7
+#define LIGHT_TEXELS 6
 
 Light light_at(uint index) {
     int texel = int(index) * LIGHT_TEXELS;
@@ -30,26 +30,6 @@ Light light_at(uint index) {
         light.textured = b.w;
     }
     return light;
-}
-
-// A punctual light as seen from `position`: the direction towards it, how far it is, and its irradiance on a surface that
-// faces it. u in [0, 1) chooses the light.
-vec3 sample_punctual(float u, vec3 position, out vec3 direction, out float distance) {
-    uint index = min(uint(u * float(params.punctual_lights)), params.punctual_lights - 1u);
-    Light light = light_at(index);
-    vec3 intensity = uintBitsToFloat(texelFetch(lights, int(index) * LIGHT_TEXELS + 6).xyz) * float(params.punctual_lights);
-    if (light.kind == LIGHT_DIRECTIONAL) {
-        direction = -light.e1;
-        distance = 3.0e38;
-        return intensity;
-    }
-    vec3 towards = light.position - position;
-    distance = length(towards);
-    direction = towards / distance;
-    if (light.kind == LIGHT_SPOT) {
-        intensity *= spot_attenuation(light.e2.x, light.e2.y, versine(-direction, light.e1));
-    }
-    return intensity / (distance * distance);
 }
 
 // The share of a textured light's factor that is emitted at a point of it: its texture, where the surface is there.
@@ -86,6 +66,14 @@ Light choose_light(uvec4 bits, out uint index) {
 // without textures.
 float emitter_density(vec3 emission, bool double_sided) {
     return (emission.r + emission.g + emission.b) * (PI / 3.0) * (double_sided ? 2.0 : 1.0) / params.light_power;
+}
+
+// The same per solid angle, 1/sr, for a ray that meets the emitter `distance` away.
+float met_density(SurfaceMaterial material, Surface surface, vec3 direction, float distance) {
+    // Without textures, as where the light is asked for.
+    vec3 emission = (FEATURES & FEATURE_TEXTURES) != 0u ? factors_of(surface.material).emission : material.emission;
+    float cosine = max(1e-12, -dot(direction, surface.geometric));
+    return emitter_density(emission, has(material, SURFACE_DOUBLE_SIDED)) * distance * distance / cosine;
 }
 
 // The density, 1/sr, in which directions to the environment are drawn.

@@ -1,10 +1,13 @@
 #version 460
 // One invocation a pixel: a ray through a random point of the pixel (and of the lens), on to a surface on which photons
 // are gathered. The rule, for every surface alike: paths follow lobes of width 0 (mirrors, smooth glass, smooth coats)
-// and gather on diffuse lobes; between following a rough lobe, gathering on it and sampling a punctual light the path
-// chooses at random, and each way weighs what it finds (followed_weight of include/bsdf.glsl). Reads the scene; writes
-// hit_position, hit_weight, hit_emission, hit_surface in glossy scenes (and gathered[].flux as the direction of an
-// unfinished path). O(bounces x log triangles). Fails by running out of steps: the path then goes on next round.
+// and gather on diffuse lobes; between following a rough lobe and gathering on it the path chooses at random, and each
+// way weighs what it finds (followed_weight of include/bsdf.glsl). Whatever it chooses, it asks for a light too that it
+// could have met by following, and weighs the two by the balance heuristic (Veach and Guibas 1995). Of all that a path
+// asks for one is chosen in proportion to what it brings, and one ray traced: else the longest path of a SIMD group
+// would hold up the others twice as long. Reads the scene; writes hit_position, hit_weight, hit_emission, hit_surface
+// in glossy scenes (and gathered, light_rays: the rest of an unfinished path). O(bounces x log triangles). Fails by
+// running out of steps: the path then goes on next round.
 #include "include/kernel.glsl"
 #include "include/rng.glsl"
 #include "include/frame.glsl"
@@ -18,20 +21,27 @@
 #include "include/path.glsl"
 #include "include/environment.glsl"
 #include "include/light.glsl"
+#include "include/light_ray.glsl"
 #include "include/bounds.glsl"
 #include "include/camera.glsl"
 #include "include/hits.glsl"
 
 layout(binding = BIND_AOVS, scalar) buffer AovBlock { Aovs aovs[]; };
+layout(binding = BIND_LIGHT_RAYS, scalar) buffer LightRayBlock { LightRay light_rays[]; };
 
 #define FIRST_BOUNCE_DIMENSION 2u  // stratified dimensions 0 and 1 place the ray in the pixel
 #define LOBE_DIMENSIONS 4096u      // of random numbers, beyond those of bounces: where in a lobe
+#define LIGHT_DIMENSIONS 8192u     // which light is asked for, and where on it
 
 // Where light is split photons bring caustics alone, and of those an eye path finds what it meets by delta lobes after
 // it has followed a rough one.
-#define ASKS_FOR_LIGHTS (PUNCTUAL_ON_ROUGH && (FEATURES & FEATURE_SPLIT) == 0u)
+#define ASKS_FOR_LIGHTS ((FEATURES & FEATURE_ROUGH) != 0u && (FEATURES & FEATURE_SPLIT) == 0u)
 
 bool sees_light(uint memory) { return (FEATURES & FEATURE_SPLIT) == 0u || (memory & PATH_CAUSTIC) != 0u; }
+
+// The weight of light that a ray meets and that could be asked for with `density`: the balance heuristic. followed: the
+// density with which rough lobes gave the ray its direction; 0: none did, and nothing else finds this light.
+float met_weight(float followed, float density) { return followed > 0.0 ? followed / (followed + density) : 1.0; }
 
 void main() {
     uint pixel = invocation_pixel();
@@ -43,6 +53,12 @@ void main() {
     float distance = 0.0;   // along the path, for the footprint
     uint memory = PATH_OUTSIDE | PATH_STRAIGHT;
     uint rays = 0u;
+    float followed = 0.0;   // see met_weight
+    float leg = 0.0;        // since the last vertex
+    LightRay light_ray = no_light_ray();
+    HitPosition position = HitPosition(vec3(0.0), HIT_NONE);
+    HitWeight weight = HitWeight(vec3(0.0), 0u);
+    bool follows = true;    // else the ray to a light is all that is left
     if (launch.round == 0u) {
         camera_ray(pixel, launch.iteration, origin, direction, distance);
     } else {
@@ -52,15 +68,22 @@ void main() {
         memory = hit_weight[pixel].normal;
         emission = hit_emission[pixel].emission;
         distance = hit_emission[pixel].footprint;
-        direction = gathered[pixel].flux;
+        Gathered rest = gathered[pixel];
+        direction = rest.flux;
+        if (ASKS_FOR_LIGHTS) {
+            followed = rest.excess.x;
+            leg = rest.excess.y;
+            light_ray = light_rays[pixel];
+            follows = rest.count == HIT_UNFINISHED;
+            if (!follows) {
+                position = HitPosition(origin, rest.count);
+                weight = HitWeight(throughput, memory);
+            }
+        }
     }
 
-    HitPosition position = HitPosition(vec3(0.0), HIT_NONE);
-    HitWeight weight = HitWeight(vec3(0.0), 0u);
     int steps = int(params.step_budget);
-    while (true) {
-        bool shadow = ASKS_FOR_LIGHTS && (memory & PATH_SHADOW) != 0u;
-        if ((memory & PATH_BOUNCES) >= (shadow ? PATH_BOUNCES : params.max_depth)) break;
+    while (follows && (memory & PATH_BOUNCES) < params.max_depth) {
         --steps;
         uint depth = memory & PATH_BOUNCES;
         bool fresh = steps + 1 == int(params.step_budget);
@@ -71,15 +94,11 @@ void main() {
             block_after(PASS_EYE);
             position = HitPosition(origin, HIT_UNFINISHED);
             weight = HitWeight(throughput, memory);
-            gathered[pixel].flux = direction;
+            gathered[pixel] = Gathered(direction, HIT_UNFINISHED, vec3(followed, leg, 0.0));
             break;
         }
         ++rays;
         ++memory;
-        if (shadow && (found == TRACE_MISS || hit.t >= distance)) {
-            emission += throughput;
-            break;
-        }
         if (found == TRACE_MISS) {
             // A ray that goes nowhere meets nothing: the update pass is to hear of it.
             if (!finite(direction)) {
@@ -87,11 +106,14 @@ void main() {
                 break;
             }
             if ((FEATURES & FEATURE_ENVIRONMENT) != 0u && sees_light(memory)) {
-                emission += throughput * environment_radiance(direction);
+                vec3 met = environment_radiance(direction);
+                if (ASKS_FOR_LIGHTS && met != vec3(0.0)) met *= met_weight(followed, environment_density(direction));
+                emission += throughput * met;
             }
             break;
         }
-        distance += shadow ? -hit.t : hit.t;
+        distance += hit.t;
+        leg += hit.t;
         Surface surface = surface_at(hit, direction);
         SurfaceMaterial material = material_at(hit, direction, surface);
         if ((FEATURES & FEATURE_VOLUME) != 0u) throughput *= transmittance(memory, surface, hit.t);
@@ -103,7 +125,6 @@ void main() {
             origin = leave(surface, direction);
             continue;
         }
-        if (shadow) break;
         if ((FEATURES & FEATURE_AOVS) != 0u && (memory & PATH_SEEN) == 0u) {
             memory |= PATH_SEEN;
             Aovs sum = aovs[pixel];
@@ -119,13 +140,18 @@ void main() {
             break;
         }
         if ((surface.front || has(material, SURFACE_DOUBLE_SIDED)) && sees_light(memory)) {
-            emission += throughput * material.emission;
+            vec3 met = material.emission;
+            if (ASKS_FOR_LIGHTS && met != vec3(0.0)) {
+                met *= met_weight(followed, met_density(material, surface, direction, leg));
+            }
+            emission += throughput * met;
         }
         float ior = index_for_path(material, STREAM_EYE, pixel, memory, throughput);
         Bsdf bsdf = bsdf_of(material, ior, surface.front);
 
         // Gathering takes part in the choice of a lobe, in place of the diffuse one.
-        vec4 lobes = lobes_of(bsdf, surface, -direction);
+        vec3 wo = -direction;
+        vec4 lobes = lobes_of(bsdf, surface, wo);
         vec3 rough = vec3(0.0);
         if ((FEATURES & FEATURE_ROUGH) != 0u) {
             rough = vec3(bsdf.alpha > 0.0 ? lobes.yz : vec2(0.0), bsdf.clearcoat_alpha > 0.0 ? lobes.w : 0.0);
@@ -134,26 +160,25 @@ void main() {
             lobes.x += shares.x + shares.y + shares.z;
             lobes.yzw -= shares;
         }
+        // The probability that a rough lobe is followed.
+        float rough_share = (rough.x + rough.y + rough.z) / (lobes.x + lobes.y + lobes.z + lobes.w);
+        bool asks = ASKS_FOR_LIGHTS && params.light_count > 0u && rough_share > 0.0;
+        if (asks) {
+            uvec4 bits = random_words(params.seed, launch.iteration, STREAM_EYE, pixel, LIGHT_DIMENSIONS + depth);
+            LightSample light = sample_light(bits, u.xy, surface.position);
+            vec3 factor = light.radiance * rough_bsdf(bsdf, surface, wo, light.direction, PART_FOLLOWED);
+            factor *= abs(dot(light.direction, surface.normal)) * transmittance_to(light, memory, bsdf, surface);
+            // What a path of full length would meet next it does not meet.
+            if (light.density > 0.0 && (memory & PATH_BOUNCES) < params.max_depth) {
+                float other = rough_share * scatter_density(bsdf, surface, vec4(0.0, rough), wo, light.direction);
+                factor *= light.density / (light.density + other);
+            }
+            take_one(light_ray, ray_to(light, throughput * factor, surface), u.w);
+        }
         float choice = stratified(params.seed, launch.iteration, pixel, depth + FIRST_BOUNCE_DIMENSION);
         float inverse_probability;
         uint lobe = choose_lobe(lobes, choice, inverse_probability);
         if (lobe == LOBE_NONE) break;
-        if (ASKS_FOR_LIGHTS && lobe != LOBE_DIFFUSE && rough[lobe - 1u] > 0.0) {
-            // One half of what would follow rough lobes asks for a light instead.
-            if (u.w < 0.5) {
-                vec3 towards;
-                throughput *= sample_punctual(2.0 * u.w, surface.position, towards, distance);
-                throughput *= rough_bsdf(bsdf, surface, -direction, towards, PART_FOLLOWED);
-                throughput *= abs(dot(towards, surface.normal)) * (lobes.x + lobes.y + lobes.z + lobes.w) /
-                              (0.5 * (rough.x + rough.y + rough.z));
-                if (all(lessThanEqual(throughput, vec3(0.0)))) break;
-                direction = towards;
-                origin = leave(surface, direction);
-                memory |= PATH_SHADOW;
-                continue;
-            }
-            inverse_probability *= 2.0;
-        }
         throughput *= inverse_probability;
         if (lobe == LOBE_DIFFUSE) {
             position.position = surface.position;
@@ -161,7 +186,7 @@ void main() {
             uvec3 albedo = uvec3(1023u);
             if ((FEATURES & FEATURE_GLOSS) != 0u) {
                 weight.weight = throughput * (1.0 / PI);
-                hit_surface[pixel] = HitSurface(hit.triangle, hit.barycentric, pack_direction(-direction));
+                hit_surface[pixel] = HitSurface(hit.triangle, hit.barycentric, pack_direction(wo));
                 position.state = bsdf.glass > 0.0 && bsdf.alpha > 0.0 ? HIT_BOTH_SIDES : HIT_DIFFUSE;
             } else {
                 weight.weight = throughput * bsdf.diffuse * (1.0 / PI);
@@ -178,11 +203,37 @@ void main() {
             vec3 n = lobe == LOBE_CLEARCOAT ? surface.clearcoat_normal : surface.normal;
             throughput *= followed_weight(density, dot(direction, n));
             memory = leave_lobe(memory, density);
+            // A clearcoat's light from below the horizon of its base is not asked for: rough_bsdf leaves it out.
+            float side = dot(direction, surface.normal) * dot(direction, surface.geometric);
+            bool met_alone = !asks || density == DELTA || side <= 0.0;
+            followed = met_alone ? 0.0 : rough_share * scatter_density(bsdf, surface, vec4(0.0, rough), wo, direction);
+            leg = 0.0;
         }
         if (all(lessThanEqual(throughput, vec3(0.0)))) break;
         memory = pass_boundary(memory, bsdf, lobe, surface);
         origin = leave(surface, direction);
     }
+    // A loop of its own: software Vulkan runs all of a loop's code for every ray of it, and this one hardly shades.
+    while (ASKS_FOR_LIGHTS && light_ray.distance > 0.0 && position.state != HIT_UNFINISHED) {
+        --steps;
+        bool fresh = steps + 1 == int(params.step_budget);
+        Hit hit;
+        uint found = trace(light_ray.origin, light_ray.direction, steps, hit);
+        if (found == TRACE_UNFINISHED) {
+            if (fresh) atomicAdd(status.stuck, 1u);
+            block_after(PASS_EYE);
+            gathered[pixel].count = position.state;
+            position.state = HIT_UNFINISHED;
+            break;
+        }
+        ++rays;
+        bool reaches = reaches_light(light_ray, found, hit);
+        if (reaches) emission += light_ray.light;
+        if (reaches || (FEATURES & FEATURE_ALPHA) == 0u) break;
+        Surface surface = surface_at(hit, light_ray.direction);
+        pass_surface(light_ray, surface, hit.t, coverage_of(material_at(hit, light_ray.direction, surface)));
+    }
+    if (ASKS_FOR_LIGHTS && position.state == HIT_UNFINISHED) light_rays[pixel] = light_ray;
     hit_position[pixel] = position;
     hit_weight[pixel] = weight;
     hit_emission[pixel] = HitEmission(

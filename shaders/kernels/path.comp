@@ -19,6 +19,7 @@
 #include "include/path.glsl"
 #include "include/environment.glsl"
 #include "include/light.glsl"
+#include "include/light_ray.glsl"
 #include "include/bounds.glsl"
 #include "include/camera.glsl"
 
@@ -30,7 +31,7 @@ layout(binding = BIND_IMAGE, scalar) writeonly buffer ImageBlock { vec3 image[];
 
 TraceState new_path(uint done, vec3 sum) {
     return TraceState(vec3(0.0), PATH_OUTSIDE | PATH_STRAIGHT, vec3(0.0), DELTA, vec3(1.0), 0.0, vec3(0.0), done, sum, 0u,
-                      vec3(0.0), 0.0, vec3(0.0), NO_TRIANGLE, vec3(0.0));
+                      no_light_ray());
 }
 
 float power_heuristic(float density, float other) {
@@ -48,11 +49,7 @@ vec3 met_emission(TraceState state, Surface surface, SurfaceMaterial material) {
     bool double_sided = has(material, SURFACE_DOUBLE_SIDED);
     if (material.emission == vec3(0.0) || !(surface.front || double_sided)) return vec3(0.0);
     if ((state.memory & PATH_SCATTERED) != 0u && state.distance < params.near_lights) return vec3(0.0);
-    // Without textures, as where the light is asked for.
-    vec3 factor = (FEATURES & FEATURE_TEXTURES) != 0u ? factors_of(surface.material).emission : material.emission;
-    float cosine = max(1e-12, -dot(state.direction, surface.geometric));
-    float light_density = emitter_density(factor, double_sided) * state.distance * state.distance / cosine;
-    return material.emission * met_weight(state, light_density);
+    return material.emission * met_weight(state, met_density(material, surface, state.direction, state.distance));
 }
 
 // Asks for a point of the lights, weighed against meeting it.
@@ -64,20 +61,10 @@ void ask_for_light(inout TraceState state, Bsdf bsdf, Surface surface, vec4 lobe
     if (light.density > 0.0) {
         factor *= power_heuristic(light.density, scatter_density(bsdf, surface, lobes, wo, light.direction));
     }
-    if ((FEATURES & FEATURE_VOLUME) != 0u) {
-        bool through = dot(light.direction, surface.geometric) < 0.0;
-        uint memory = pass_boundary(state.memory, bsdf, through ? LOBE_TRANSMISSION : LOBE_NONE, surface);
-        uint medium = memory >> PATH_MEDIUM_SHIFT;
-        if (medium != PATH_NO_MEDIUM) factor *= exp(-light.distance * absorption_of(medium));
-    }
+    factor *= transmittance_to(light, state.memory, bsdf, surface);
     // What is lit so near, and seen by way of another surface, is left to photons.
     bool near = (state.memory & PATH_STRAIGHT) == 0u && light.triangle != NO_TRIANGLE && light.distance < params.near_lights;
-    if (near || !any(greaterThan(factor, vec3(0.0)))) return;
-    state.light = state.throughput * factor;
-    state.light_origin = leave(surface, light.direction);
-    state.light_direction = light.direction;
-    state.light_distance = light.distance;
-    state.light_triangle = light.triangle;
+    if (!near) state.light_ray = ray_to(light, state.throughput * factor, surface);
 }
 
 // Scatters the path: sets its direction, its density and its throughput; false where it ends.
@@ -117,11 +104,11 @@ void main() {
             break;
         }
         uint path = launch.iteration * launch.count + state.done;
-        bool shadow = state.light_distance > 0.0;
+        bool shadow = state.light_ray.distance > 0.0;
         float from_eye;
         if ((state.memory & PATH_BOUNCES) == 0u) camera_ray(pixel, path, state.origin, state.direction, from_eye);
-        vec3 origin = shadow ? state.light_origin : state.origin;
-        vec3 direction = shadow ? state.light_direction : state.direction;
+        vec3 origin = shadow ? state.light_ray.origin : state.origin;
+        vec3 direction = shadow ? state.light_ray.direction : state.direction;
         bool fresh = steps + 1 == int(params.step_budget);
         Hit hit;
         uint found = trace(origin, direction, steps, hit);
@@ -131,9 +118,9 @@ void main() {
             break;
         }
         ++rays;
-        if (shadow && (found == TRACE_MISS || hit.triangle == state.light_triangle || hit.t >= state.light_distance)) {
-            state.radiance += state.light;
-            state.light_distance = 0.0;
+        if (shadow && reaches_light(state.light_ray, found, hit)) {
+            state.radiance += state.light_ray.light;
+            state.light_ray.distance = 0.0;
         } else if (found == TRACE_MISS) {
             if ((FEATURES & FEATURE_ENVIRONMENT) != 0u) {
                 vec3 met = environment_radiance(direction);
@@ -146,9 +133,7 @@ void main() {
             SurfaceMaterial material = material_at(hit, direction, surface);
             float coverage = (FEATURES & FEATURE_ALPHA) != 0u ? coverage_of(material) : 1.0;
             if (shadow) {
-                state.light *= 1.0 - coverage;
-                state.light_origin = leave(surface, direction);
-                state.light_distance = coverage < 1.0 ? max(1e-30, state.light_distance - hit.t) : 0.0;
+                pass_surface(state.light_ray, surface, hit.t, coverage);
             } else {
                 ++state.memory;
                 uint bounces = state.memory & PATH_BOUNCES;
@@ -188,7 +173,7 @@ void main() {
                 state.ended = alive ? 0u : 1u;
             }
         }
-        if (state.ended != 0u && state.light_distance == 0.0) {
+        if (state.ended != 0u && state.light_ray.distance == 0.0) {
             bool valid = finite(state.radiance);
             if (!valid) atomicAdd(status.invalid, 1u);
             state = new_path(state.done + 1u, state.sum + (valid ? state.radiance : vec3(0.0)));

@@ -121,7 +121,8 @@ void main() {
                     // Two conditions: their disjunction is a constant that the optimiser loses.
                     bool all = (state.memory & (PATH_STRAIGHT | PATH_DIRECT)) == PATH_STRAIGHT;
                     uint red = floatBitsToUint(power.r) | (all ? 0x80000000u : 0u);
-                    if (PUNCTUAL_ON_ROUGH) power.r = uintBitsToFloat(red);
+                    bool asked_for = (FEATURES & FEATURE_ROUGH) != 0u && (FEATURES & FEATURE_PUNCTUAL_LIGHTS) != 0u;
+                    if (asked_for) power.r = uintBitsToFloat(red);
                     if ((FEATURES & FEATURE_SPLIT) != 0u) power.r = uintBitsToFloat(red);
                     if ((FEATURES & FEATURE_SPLIT) != 0u && (state.memory & PATH_SCATTERED) == 0u) {
                         power.g = uintBitsToFloat(floatBitsToUint(power.g) | 0x80000000u);

@@ -176,9 +176,8 @@ struct TextureLookup {
     uint unused[2];
 };
 
-// One entry of the alias table of lights, punctual lights first; 112 bytes, read as 7 uvec4 texels: two for textured
-// lights only, the last where eye paths sample punctual lights. A path that starts here carries `power`: flux of the
-// light / its probability.
+// One entry of the alias table of lights; 96 bytes, read as 6 uvec4 texels, two of them for textured lights only. A
+// path that starts here carries `power`: flux of the light / its probability.
 struct Light {
     vec3 position;     // triangle: v0; point, spot: position
     uint kind;         // LIGHT_*
@@ -192,8 +191,6 @@ struct Light {
     vec2 corner[3];    // textured: barycentrics of its corners in the triangle that it is a part of
     uint triangle;     // textured: that triangle, into the leaf-ordered ones
     uint textured;     // its radiance or alpha comes from textures
-    vec3 intensity;    // point, spot: W sr^-1 (frame-scaled); directional: W m^-2
-    uint unused;
 };
 
 // A stored photon: what the distance test reads (16 bytes) and what an accepted photon adds (16 bytes).
@@ -211,7 +208,7 @@ struct PhotonFlux {
 
 // Where an eye path ended. 3 records of 16 bytes, one array each, and a fourth in glossy scenes.
 struct HitPosition {
-    vec3 position;     // scene frame; while the path is unfinished: origin of the next ray
+    vec3 position;     // scene frame; while the path is unfinished and goes on: origin of the next ray
     uint state;        // HIT_* | diffuse albedo, 10 bits a channel, << 2: what the F-tests weigh photons by
 };
 struct HitWeight {
@@ -238,7 +235,6 @@ struct HitSurface {
 #define PATH_STRAIGHT 0x800u    // it has met nothing but delta lobes since it left the eye or a punctual light
 #define PATH_DISPERSED 0x1000u  // its wavelength is drawn
 #define PATH_DIRECT 0x2000u     // a photon that has met nothing yet since it left a punctual light or a triangle
-#define PATH_SHADOW 0x2000u     // an eye path whose last ray asks whether a punctual light is seen
 #define PATH_SCATTERED 0x4000u  // where light is split: a photon since it met another lobe than a delta, but for the surface
                                 // near its lamp; an eye path whose last lobe was no delta, and one before it neither
 #define PATH_SEEN 0x4000u       // an eye path that has met a surface that is there
@@ -247,11 +243,22 @@ struct HitSurface {
 #define PATH_MEDIUM_SHIFT 16u
 #define PATH_NO_MEDIUM 0xffffu  // also the largest number of materials
 
-// Sum of one pass of the gather over a pixel's disc.
+// A ray that asks whether a light is seen.
+struct LightRay {
+    vec3 origin;
+    float distance;    // left to the light; 0: there is no ray
+    vec3 direction;
+    uint triangle;     // of the light, which the ray may meet; NO_TRIANGLE: a light of no area
+    vec3 light;        // what it adds to the picture where nothing is in between
+};
+#define NO_TRIANGLE 0xffffffffu
+
+// Sum of one pass of the gather over a pixel's disc. While an eye path is unfinished: the rest of what it remembers.
 struct Gathered {
-    vec3 flux;         // sum of photon power * correction, without the hit's weight
-    uint count;        // accepted photons
-    vec3 excess;       // what rounding has left too much in flux (Kahan 1965)
+    vec3 flux;         // sum of photon power * correction, without the hit's weight; unfinished: direction of the ray
+    uint count;        // accepted photons; unfinished: the state that the path ends in, HIT_UNFINISHED: it goes on
+    vec3 excess;       // what rounding has left too much in flux (Kahan 1965); unfinished: the density with which rough
+                       // lobes gave the direction, the length since the last vertex, 0
 };
 
 // What a pixel remembers between iterations.
@@ -315,13 +322,8 @@ struct TraceState {
     uint done;             // paths of this launch
     vec3 sum;              //   and their radiance
     uint ended;            // 1: the path ends with the ray to the light
-    vec3 light_origin;
-    float light_distance;  // left to the light; 0: no ray to a light
-    vec3 light_direction;
-    uint light_triangle;   // what the ray may meet; NO_TRIANGLE: a light of no area
-    vec3 light;            // what the light adds where nothing is in between
+    LightRay light_ray;
 };
-#define NO_TRIANGLE 0xffffffffu
 
 // Where a resumable walk over the grid goes on.
 struct Cursor {
@@ -393,7 +395,6 @@ struct Params {
     float bounds_radius;   // of a sphere about the origin, padded alike
     uint max_depth;
     uint light_count;
-    uint punctual_lights;  // the first so many of them
     float near_lights;     // frame units; 0 where light is not split
     float light_power;     // of all lights, mean channel, W (frame-scaled): what the alias table is in proportion to
     uvec2 environment;     // its columns and rows
@@ -434,11 +435,11 @@ struct Launch {
 static_assert(sizeof(BvhNode) == 64);
 static_assert(sizeof(TriangleGeometry) == 48);
 static_assert(sizeof(TriangleShading) == 16);
-static_assert(sizeof(SurfaceMaterial) == 144 && sizeof(TextureLookup) == 48 && sizeof(Light) == 112);
+static_assert(sizeof(SurfaceMaterial) == 144 && sizeof(TextureLookup) == 48 && sizeof(Light) == 96);
 static_assert(sizeof(Photon) == 16 && sizeof(PhotonFlux) == 16);
 static_assert(sizeof(HitPosition) == 16 && sizeof(HitWeight) == 16 && sizeof(HitEmission) == 16 &&
               sizeof(HitSurface) == 16);
-static_assert(sizeof(Gathered) == 28 && sizeof(Film) == 24);
+static_assert(sizeof(Gathered) == 28 && sizeof(Film) == 24 && sizeof(LightRay) == 44);
 static_assert(sizeof(Launch) <= 128);
 }  // namespace vkcppm::gpu
 #endif

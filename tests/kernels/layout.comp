@@ -33,6 +33,7 @@ void bump(inout vec2 a[MAX_SECTORS / 2]) { for (int i = 0; i < MAX_SECTORS / 2; 
 void bump(inout vec2 a[MAX_SECTORS]) { for (int i = 0; i < MAX_SECTORS; ++i) bump(a[i]); }
 
 #define X(member) bump(value.member);
+void bump(inout LightRay value) { MEMBERS_LIGHT_RAY }
 #define BLOCK(BINDING, Block, Struct, values) layout(binding = BINDING, scalar) buffer Block { Struct values[]; };
 #define BUMP(Struct, value_in, value_out, MEMBERS) \
     {                                              \
@@ -67,6 +68,7 @@ BLOCK(BIND_FIRST_STORAGE + 19, LaunchArrayBlock, Launch, launches)
 BLOCK(BIND_FIRST_STORAGE + 20, TextureLookupBlock, TextureLookup, texture_lookups)
 BLOCK(BIND_FIRST_STORAGE + 21, HitSurfaceBlock, HitSurface, hit_surfaces)
 BLOCK(BIND_FIRST_STORAGE + 22, TraceStateBlock, TraceState, trace_states)
+BLOCK(BIND_FIRST_STORAGE + 23, LightRayBlock, LightRay, light_rays)
 
 void main() {
     if (gl_GlobalInvocationID.x != 0u) return;
@@ -93,6 +95,7 @@ void main() {
     ROUND_TRIP(TextureLookup, texture_lookups, MEMBERS_TEXTURE_LOOKUP)
     ROUND_TRIP(HitSurface, hit_surfaces, MEMBERS_HIT_SURFACE)
     ROUND_TRIP(TraceState, trace_states, MEMBERS_TRACE_STATE)
+    ROUND_TRIP(LightRay, light_rays, MEMBERS_LIGHT_RAY)
     BUMP(Params, params, params_array[4], MEMBERS_PARAMS)
     BUMP(Launch, launch, launches[4], MEMBERS_LAUNCH)
 }

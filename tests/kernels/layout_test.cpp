@@ -47,6 +47,11 @@ VISITOR(TriangleShading, MEMBERS_TRIANGLE_SHADING)
 VISITOR(SurfaceMaterial, MEMBERS_SURFACE_MATERIAL)
 VISITOR(TextureLookup, MEMBERS_TEXTURE_LOOKUP)
 VISITOR(Light, MEMBERS_LIGHT)
+VISITOR(LightRay, MEMBERS_LIGHT_RAY)
+template <typename Visit>
+void scalars(gpu::LightRay& ray, Visit visit) {
+    each_scalar(ray, visit);
+}
 VISITOR(Photon, MEMBERS_PHOTON)
 VISITOR(PhotonFlux, MEMBERS_PHOTON_FLUX)
 VISITOR(HitPosition, MEMBERS_HIT_POSITION)
@@ -121,7 +126,7 @@ protected:
     F(1, TriangleGeometry) F(2, TriangleShading) F(3, SurfaceMaterial) F(4, Light) F(5, Photon) F(6, PhotonFlux)      \
         F(7, HitPosition) F(8, HitWeight) F(9, HitEmission) F(10, Gathered) F(11, PixelState) F(12, Aovs) F(13, Film) \
             F(14, PathState) F(15, Cursor) F(16, Grid) F(17, Status) F(18, Params) F(19, Launch)                      \
-                F(20, TextureLookup) F(21, HitSurface) F(22, TraceState)
+                F(20, TextureLookup) F(21, HitSurface) F(22, TraceState) F(23, LightRay)
 
 TEST_F(Layout, EveryMemberStandsWhereTheHostPutsIt) {
 #define UPLOAD(index, Struct) upload<gpu::Struct>(BIND_FIRST_STORAGE + index);

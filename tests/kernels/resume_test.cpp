@@ -11,6 +11,7 @@
 #include "support/gpu.h"
 #include "support/names.h"
 #include "support/rig.h"
+#include "support/rooms.h"
 #include "support/shapes.h"
 
 namespace vkcppm::test {
@@ -90,6 +91,27 @@ TEST_F(Determinism, SmallPhotonBuffersGiveTheSameBits) {
         whole.integrator.fill(a);
         cut.integrator.fill(b);
         EXPECT_EQ(a.stored_photons, b.stored_photons);
+    }
+}
+
+// Where eye paths ask for lights, the ray to one is cut too, also behind a path that has ended.
+TEST_F(Determinism, SmallStepBudgetsGiveTheSameBitsWhereLightsAreAskedFor) {
+    for (const Case& room : small_light_cases()) {
+        Scene scene = make_room();
+        Settings settings = settings_of("cppm");
+        room.change(scene, settings);
+        Rig whole(scene, settings);
+        whole.integrator.run(iterations);
+        for (const std::uint32_t budget : {100u, 112u}) {
+            Rig cut(scene, settings);
+            gpu::Params params = cut.integrator.params();
+            params.step_budget = budget;
+            cut.integrator.set_params(params);
+            cut.integrator.run(iterations);
+            EXPECT_GT(calls(cut).at("eye"), calls(whole).at("eye")) << "the eye pass was not cut";
+            EXPECT_EQ(differences(whole.integrator.resolve(), cut.integrator.resolve()), 0u)
+                << "of " << whole.pixels() << " pixels, " << room.name << ", step budget " << budget;
+        }
     }
 }
 

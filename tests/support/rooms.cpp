@@ -235,4 +235,49 @@ const std::vector<Case>& material_cases() {
     return cases;
 }
 
+namespace {
+
+void make_rough(Scene& scene) {
+    for (const auto i : {walls, floor_, pane}) {
+        scene.materials[i].specular = 1.0f;
+        scene.materials[i].roughness = 0.2f;
+    }
+    scene.materials[ball].metallic = 1.0f;
+    scene.materials[ball].roughness = 0.4f;
+    scene.materials[pane].alpha = Material::Alpha::blend;
+    scene.materials[pane].opacity = 0.6f;
+}
+
+}  // namespace
+
+const std::vector<Case>& small_light_cases() {
+    static const std::vector<Case> cases = {
+        {"lamp",
+         [](Scene& s, Settings&) {
+             make_rough(s);
+             std::erase_if(s.triangles, [](const Triangle& t) { return t.material == lamp; });
+             add_quad(s, {0.98, 1.99, 0.98}, {0.04, 0, 0}, {0, 0, 0.04}, lamp);
+             s.materials[lamp].emission *= 900.0f;
+         }},
+        {"sun",
+         [](Scene& s, Settings&) {
+             make_rough(s);
+             s.materials[lamp].emission = glm::vec3(0.0f);
+             s.triangles.erase(s.triangles.begin(), s.triangles.begin() + 10);  // the walls, not the floor
+             s.environment = Environment{{64, 32}, std::vector<glm::vec3>(64 * 32, glm::vec3(0.2f, 0.3f, 0.5f))};
+             s.environment->radiance[8 * 64 + 40] = glm::vec3(700.0f, 600.0f, 500.0f);
+         }},
+        {"point",
+         [](Scene& s, Settings&) {
+             make_rough(s);
+             s.materials[lamp].emission = glm::vec3(0.0f);
+             PunctualLight point;
+             point.intensity = {1.5f, 2.0f, 2.5f};
+             point.position = {1.0, 1.9, 1.3};
+             s.lights.push_back(point);
+         }},
+    };
+    return cases;
+}
+
 }  // namespace vkcppm::test

@@ -22,4 +22,8 @@ inline void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
 const std::vector<Case>& material_cases();
 
+/// The room with a ball of rough metal, all else of rough plastic, under a light so small that what follows rough lobes
+/// hardly ever meets it. The camera does not see it.
+const std::vector<Case>& small_light_cases();
+
 }  // namespace vkcppm::test

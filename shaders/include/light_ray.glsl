@@ -1,0 +1,39 @@
+// Rays that ask for a light (next-event estimation). Surfaces that are partly there let that part pass, all others stop
+// them, glass too. Pure functions.
+
+LightRay no_light_ray() { return LightRay(vec3(0.0), 0.0, vec3(0.0), NO_TRIANGLE, vec3(0.0)); }
+
+// What the solid that the ray goes through lets pass. memory: of the path that asks, at the surface.
+vec3 transmittance_to(LightSample light, uint memory, Bsdf bsdf, Surface surface) {
+    if ((FEATURES & FEATURE_VOLUME) == 0u) return vec3(1.0);
+    bool through = dot(light.direction, surface.geometric) < 0.0;
+    uint medium = pass_boundary(memory, bsdf, through ? LOBE_TRANSMISSION : LOBE_NONE, surface) >> PATH_MEDIUM_SHIFT;
+    return medium == PATH_NO_MEDIUM ? vec3(1.0) : exp(-light.distance * absorption_of(medium));
+}
+
+// From the surface to the light. contribution: what it adds to the picture where nothing is in between.
+LightRay ray_to(LightSample light, vec3 contribution, Surface surface) {
+    float distance = any(greaterThan(contribution, vec3(0.0))) ? light.distance : 0.0;
+    return LightRay(leave(surface, light.direction), distance, light.direction, light.triangle, contribution);
+}
+
+// One of two rays in proportion to what they add, for the sum of both; u in [0, 1).
+void take_one(inout LightRay ray, LightRay other, float u) {
+    float a = ray.distance > 0.0 ? ray.light.r + ray.light.g + ray.light.b : 0.0;
+    float b = other.distance > 0.0 ? other.light.r + other.light.g + other.light.b : 0.0;
+    bool takes = u * (a + b) < b;
+    if (takes) ray = other;
+    if (a + b > 0.0) ray.light *= (a + b) / (takes ? b : a);
+}
+
+// True where the trace of the ray has found nothing in between.
+bool reaches_light(LightRay ray, uint found, Hit hit) {
+    return found == TRACE_MISS || hit.triangle == ray.triangle || hit.t >= ray.distance;
+}
+
+// The ray has met a surface of which the share `coverage` is there.
+void pass_surface(inout LightRay ray, Surface surface, float t, float coverage) {
+    ray.light *= 1.0 - coverage;
+    ray.origin = leave(surface, ray.direction);
+    ray.distance = coverage < 1.0 ? max(1e-30, ray.distance - t) : 0.0;
+}
