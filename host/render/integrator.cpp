@@ -4,6 +4,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -109,6 +110,7 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     buffers_.allocate(BIND_LIGHT_RAYS, "light rays", asks ? pixels_ * sizeof(gpu::LightRay) : 0, Kind::storage);
     buffers_.allocate(BIND_FILM, "film", pixels_ * sizeof(gpu::Film), Kind::storage);
     buffers_.allocate(BIND_CURSOR, "cursors", pixels_ * sizeof(gpu::Cursor), Kind::storage);
+    buffers_.allocate(BIND_SEARCHES, "searches", pixels_ * sizeof(std::uint32_t), Kind::storage);
     buffers_.allocate(BIND_NEAREST, "nearest", settings.knn * pixels_ * sizeof(float), Kind::storage);
     buffers_.allocate(BIND_IMAGE, "image", pixels_ * sizeof(gpu::vec3), Kind::storage);
     buffers_.allocate(BIND_PATHS, "paths", params_.photon_lanes * sizeof(gpu::PathState), Kind::storage);
@@ -254,8 +256,12 @@ void Integrator::launch_rounds(const std::string& kernel, std::uint64_t invocati
                                std::uint32_t first_round) {
     for (std::uint32_t r = 0; r < rounds_.at(pass); ++r) {
         const std::uint32_t last = r + 1 == rounds_.at(pass) ? 1 : 0;
-        launch(kernel, invocations,
-               {.iteration = i, .round = first_round + r, .last_round = last, .offset = 0, .count = 0});
+        const gpu::Launch push{.iteration = i, .round = first_round + r, .last_round = last, .offset = 0, .count = 0};
+        if (pass == Pass::knn) {
+            commands_.launch_indirect(kernels_.at(kernel), buffer(BIND_STATUS), offsetof(gpu::Status, search_groups), push);
+        } else {
+            launch(kernel, invocations, push);
+        }
     }
 }
 
@@ -394,6 +400,17 @@ void Integrator::run_kernel(const std::string& kernel, std::uint64_t invocations
 }
 
 void Integrator::run_from_grid() {
+    // In place of the eye pass.
+    const auto hits = buffer(BIND_HIT_POSITION).download<gpu::HitPosition>(pixels_);
+    const auto states = buffer(BIND_PIXELS).download<gpu::PixelState>(pixels_);
+    std::vector<std::uint32_t> searches;
+    for (std::uint32_t pixel = 0; pixel < pixels_; ++pixel) {
+        if ((hits[pixel].state & HIT_DIFFUSE) && states[pixel].seeded == 0) searches.push_back(pixel);
+    }
+    buffer(BIND_SEARCHES).upload(searches);
+    auto status = buffer(BIND_STATUS).download_value<gpu::Status>();
+    status.searches = std::uint32_t(searches.size());
+    buffer(BIND_STATUS).upload_value(status);
     commands_.begin();
     iterate(completed_, Pass::grid, Pass::update, 0);
     finish();

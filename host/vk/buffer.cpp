@@ -26,7 +26,7 @@ vk::BufferUsageFlags usage_of(Buffer::Kind kind) {
     const vk::BufferUsageFlags transfer = Usage::eTransferSrc | Usage::eTransferDst;
     switch (kind) {
         case Buffer::Kind::uniform: return transfer | Usage::eUniformBuffer;
-        case Buffer::Kind::storage: return transfer | Usage::eStorageBuffer;
+        case Buffer::Kind::storage: return transfer | Usage::eStorageBuffer | Usage::eIndirectBuffer;
         default: return transfer | Usage::eUniformTexelBuffer | Usage::eStorageBuffer;
     }
 }

@@ -140,11 +140,25 @@ void Commands::begin() {
 }
 
 void Commands::launch(const Kernel& kernel, std::uint64_t invocations, const gpu::Launch& push) {
-    auto& commands = *impl_->commands;
     const std::uint64_t groups = (invocations + kernel.impl().workgroup - 1) / kernel.impl().workgroup;
     const std::uint64_t limit = impl_->device->impl().limits.maxComputeWorkGroupCount[0];
     const std::uint64_t rows = (groups + limit - 1) / limit;
     assert(groups > 0 && rows <= impl_->device->impl().limits.maxComputeWorkGroupCount[1]);
+    record(kernel, push, [&](vk::raii::CommandBuffer& commands) {
+        commands.dispatch(std::uint32_t((groups + rows - 1) / rows), std::uint32_t(rows), 1);
+    });
+}
+
+void Commands::launch_indirect(const Kernel& kernel, const Buffer& groups, std::uint64_t offset,
+                               const gpu::Launch& push) {
+    record(kernel, push,
+           [&](vk::raii::CommandBuffer& commands) { commands.dispatchIndirect(**groups.impl().buffer, offset); });
+}
+
+/// Records what `dispatch` adds, timed, after all before it and before all after it.
+template <typename Dispatch>
+void Commands::record(const Kernel& kernel, const gpu::Launch& push, Dispatch dispatch) {
+    auto& commands = *impl_->commands;
     const bool timed = impl_->timed.size() < impl_->capacity;
     const std::uint32_t query = 2 * std::uint32_t(impl_->timed.size());
     using Stage = vk::PipelineStageFlagBits;
@@ -153,9 +167,10 @@ void Commands::launch(const Kernel& kernel, std::uint64_t invocations, const gpu
     commands.bindPipeline(vk::PipelineBindPoint::eCompute, **kernel.impl().pipeline);
     commands.pushConstants<gpu::Launch>(**impl_->bindings->impl().layout, vk::ShaderStageFlagBits::eCompute, 0, push);
     if (timed) commands.writeTimestamp(Stage::eTopOfPipe, **impl_->queries, query);
-    commands.dispatch(std::uint32_t((groups + rows - 1) / rows), std::uint32_t(rows), 1);
-    const vk::MemoryBarrier barrier(Access::eShaderWrite, Access::eShaderRead | Access::eShaderWrite);
-    commands.pipelineBarrier(Stage::eComputeShader, Stage::eComputeShader, {}, barrier, {}, {});
+    dispatch(commands);
+    const vk::MemoryBarrier barrier(Access::eShaderWrite,
+                                    Access::eShaderRead | Access::eShaderWrite | Access::eIndirectCommandRead);
+    commands.pipelineBarrier(Stage::eComputeShader, Stage::eComputeShader | Stage::eDrawIndirect, {}, barrier, {}, {});
     if (timed) {
         commands.writeTimestamp(Stage::eComputeShader, **impl_->queries, query + 1);
         impl_->timed.push_back(&kernel);

@@ -72,10 +72,14 @@ public:
     void begin();
     /// At least `invocations` invocations in whole work groups, folded into y beyond 65,535 groups.
     void launch(const Kernel& kernel, std::uint64_t invocations, const gpu::Launch& push);
+    /// As many work groups as three words of `groups` from byte `offset` say when it is due, none where the first is 0.
+    void launch_indirect(const Kernel& kernel, const Buffer& groups, std::uint64_t offset, const gpu::Launch& push);
     /// Submits what was recorded since begin() and waits for it. Throws Error(device_lost).
     std::vector<Timing> finish();
 
 private:
+    template <typename Dispatch>
+    void record(const Kernel& kernel, const gpu::Launch& push, Dispatch dispatch);
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

@@ -1,5 +1,6 @@
 #version 460
-// One invocation: the iteration is complete. Reads the number of photons; writes status.completed, .photons, .stored.
+// One invocation: the iteration is complete. Reads the number of photons; writes status.completed,
+// .searches, .photons, .stored.
 #include "include/kernel.glsl"
 #include "include/counters.glsl"
 
@@ -8,6 +9,7 @@ layout(binding = BIND_COUNTERS, scalar) readonly buffer CounterBlock { uint coun
 void main() {
     if (blocked(0u) || invocation() != 0u) return;
     status.completed = launch.iteration + 1u;
+    status.searches = 0u;
     status.photons = counters[PHOTON_TOTAL];
     status.stored += status.photons;
 }

@@ -25,7 +25,9 @@
 #include "include/bounds.glsl"
 #include "include/camera.glsl"
 #include "include/hits.glsl"
+#include "include/pixels.glsl"
 
+layout(binding = BIND_SEARCHES, scalar) writeonly buffer SearchBlock { uint searches[]; };
 layout(binding = BIND_AOVS, scalar) buffer AovBlock { Aovs aovs[]; };
 layout(binding = BIND_LIGHT_RAYS, scalar) buffer LightRayBlock { LightRay light_rays[]; };
 
@@ -238,5 +240,10 @@ void main() {
     hit_weight[pixel] = weight;
     hit_emission[pixel] = HitEmission(
         emission, (position.state & HIT_MASK) == HIT_UNFINISHED ? distance : distance * params.pixel_radius);
+    // The knn pass, which has little to do after the first iterations, goes through these alone.
+    if ((position.state & HIT_DIFFUSE) != 0u && pixels[pixel].seeded == 0u) {
+        uint place = atomicAdd(status.searches, 1u);
+        if (place < pixel_count()) searches[place] = pixel;
+    }
     if (rays > 1u) count_rays(rays - 1u);  // the host knows of the first of every pixel
 }

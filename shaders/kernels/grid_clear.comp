@@ -1,13 +1,21 @@
 #version 460
-// Zeroes the table of cell counts. Writes counters[0 .. grid.entries]; each invocation strides over it.
+// Zeroes the table of cell counts; each invocation strides over it. Reads how many pixels look for a radius. Writes
+// counters[0 .. grid.entries], and how many work groups of knn there is work for.
 #include "include/kernel.glsl"
 #include "include/grid.glsl"
 #include "include/counters.glsl"
+
+#define MOST_GROUPS 65535u  // along an axis, of every device
 
 layout(binding = BIND_COUNTERS, scalar) buffer CounterBlock { uint counters[]; };
 
 void main() {
     if (blocked(0u)) return;
+    if (invocation() == 0u) {
+        uint groups = (status.searches + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x;
+        uint rows = groups / MOST_GROUPS + 1u;
+        status.search_groups = uvec3((groups + rows - 1u) / rows, rows, 1u);
+    }
     uint stride = gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_WorkGroupSize.x;
     for (uint i = invocation(); i <= grid.entries; i += stride) counters[i] = 0u;
 }

@@ -1,9 +1,9 @@
 #version 460
-// Starting radii: one invocation a pixel that sees a diffuse surface and has no seeded radius yet. Its squared radius
+// Starting radii: one invocation a pixel that sees a diffuse surface and has no seeded radius yet, in any order. Its squared radius
 // becomes the squared distance of the k-th nearest accepted photon of this iteration; strict < in the gather then
 // leaves k - 1 inside, which makes (k - 1) / (pi R^2) unbiased. With fewer than k photons within the largest radius
 // it keeps that one and tries again next iteration: the estimate truncated there is unbiased too.
-// Reads hits, grid, sorted photons; writes pixels, tally, nearest, cursors; gathered[] holds the state of the search
+// Reads searches, hits, grid, sorted photons; writes pixels, tally, nearest, cursors; gathered[] holds the state of the search
 // (flux.x: largest kept squared distance, flux.y: its index, flux.z: search radius, count: kept).
 // O(photons in the cells met + k per replacement). Fails by running out of steps: goes on next round.
 #include "include/kernel.glsl"
@@ -17,6 +17,7 @@
 #include "include/pixels.glsl"
 #include "estimators/estimator.glsl"
 
+layout(binding = BIND_SEARCHES, scalar) readonly buffer SearchBlock { uint searches[]; };
 layout(binding = BIND_NEAREST, scalar) buffer NearestBlock { float nearest[]; };  // [knn x P]
 
 // Keeps the k smallest squared distances; returns the loop trips it took.
@@ -35,9 +36,8 @@ int keep(inout Gathered kept, float squared, uint pixel) {
 }
 
 void main() {
-    uint pixel = invocation_pixel();
-    if (pixel >= pixel_count() || blocked(PASS_KNN)) return;
-    if (!gathers(pixel) || pixels[pixel].seeded != 0u) return;
+    if (invocation() >= status.searches || blocked(PASS_KNN)) return;
+    uint pixel = searches[invocation()];
 
     // The largest radius: bounded by the pixel's footprint, but not below a disc of k photons at mean density.
     float cap = sqrt(pixels[pixel].radius2);

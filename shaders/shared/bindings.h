@@ -48,6 +48,7 @@
 #define BIND_AOVS 39           // [P] Aovs, where they are asked for
 #define BIND_HIT_SURFACE 40    // [P] HitSurface, in glossy scenes
 #define BIND_LIGHT_RAYS 41     // [P] LightRay, where eye paths ask for lights
-#define BIND_COUNT 42
+#define BIND_SEARCHES 42       // [P] pixels that look for a starting radius
+#define BIND_COUNT 43
 #define BIND_FIRST_TEXEL 1
 #define BIND_FIRST_STORAGE 17

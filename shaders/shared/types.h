@@ -369,6 +369,8 @@ struct Status {
     uint stored;       // photons stored since the host last cleared it
     uint rays_high;
     uint levels;       // that the grid is to have
+    uint searches;     // pixels that gather in this iteration without a seeded radius
+    uvec3 search_groups;  // work groups for them
     // From here on what the next plan of the grid is made from, and so what a checkpoint holds.
     uint photons;      // stored in the last iteration
     uint radius_histogram[RADIUS_BINS];     // pixels that gather

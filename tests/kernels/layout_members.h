@@ -32,7 +32,7 @@
 #define MEMBERS_CURSOR X(cell) X(photon)
 #define MEMBERS_GRID X(origin) X(levels) X(dims) X(cell) X(inverse_cell) X(reach) X(first) X(entries)
 #define MEMBERS_STATUS X(blocked) X(completed) X(capacity) X(stuck) X(invalid) X(rays) \
-    X(stored) X(rays_high) X(levels) X(photons) X(radius_histogram) X(photon_histogram) X(photon_histogram_high)
+    X(stored) X(rays_high) X(levels) X(searches) X(search_groups) X(photons) X(radius_histogram) X(photon_histogram) X(photon_histogram_high)
 #define MEMBERS_PARAMS \
     X(eye) X(width) X(right) X(height) X(up) X(seed) X(forward) X(pixel_radius) X(bounds_low) X(photons) \
     X(bounds_high) X(photons_per_lane) X(photon_lanes) X(photon_capacity) X(bounds_radius) X(max_depth) X(light_count) X(near_lights) X(light_power) X(environment) \
