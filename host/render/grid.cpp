@@ -4,6 +4,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <span>
 
 namespace vkcppm {
@@ -29,15 +30,18 @@ bool fits(const gpu::Grid& grid, const gpu::Params& params) {
 }
 
 gpu::Grid coarsest(const gpu::Grid& grid, std::uint32_t levels) {
-    assert(levels > 0);
+    assert(levels > 0 && grid.levels > 0);
     gpu::Grid kept = grid;
     kept.levels = std::min(grid.levels, levels);
-    const auto drop = [&](auto& values) { std::shift_left(std::begin(values), std::end(values), grid.levels - kept.levels); };
+    const std::uint32_t dropped = grid.levels - kept.levels;
+    const auto drop = [&](auto& values) { std::shift_left(std::begin(values), std::end(values), dropped); };
     drop(kept.dims);
     drop(kept.cell);
     drop(kept.inverse_cell);
     drop(kept.reach);
     drop(kept.first);
+    // Kernels may know of more levels.
+    std::fill(std::begin(kept.reach) + (kept.levels - 1), std::end(kept.reach), std::numeric_limits<float>::max());
     return kept;
 }
 

@@ -26,6 +26,7 @@ constexpr std::uint32_t stride_invocations = 16384;    // of kernels that stride
 constexpr std::uint32_t first_photon_capacity = 6;     // photons a path, before a render knows better
 constexpr double radius_cap = 0.2;                     // of the scene's radius
 constexpr double footprint_cap = 64.0;                 // footprints of the pixel
+constexpr std::uint64_t most_sorted_a_lane = 32768;    // well below the loop trips of every driver
 constexpr std::uint32_t plan_interval = 16;            // iterations between plans of the grid, after the first few
 
 /// True where the grid is planned before iteration i: 0, the powers of two, multiples of plan_interval.
@@ -72,8 +73,7 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     params_.photon_capacity = per_lane * first_photon_capacity;
     params_.knn = settings.knn;
     params_.radius_cap = float(radius_cap * std::max(scene.radius, 1e-3));
-    params_.scene_area = float(std::max(scene.area, 1e-12));
-    const double mean_disc = double(settings.knn) * params_.scene_area / double(settings.photons);
+    const double mean_disc = double(settings.knn) * std::max(scene.area, 1e-12) / double(settings.photons);
     params_.radius_floor = std::min(params_.radius_cap, float(std::sqrt(mean_disc / std::numbers::pi)));
     params_.footprint_cap = float(settings.caustics.value_or(footprint_cap));
     params_.alpha = float(settings.alpha);
@@ -81,6 +81,10 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     params_.beta = float(settings.beta);
     params_.cells = std::bit_ceil(std::clamp(16 * settings.photons, 1u << 12, 1u << 20));
     params_.grid_levels = 1;
+    // By the settings alone, so that it does not hang on how the render was cut; for 65,536 paths all there are.
+    constexpr std::uint64_t sorted_bytes = 1u << 27, usual_photons = 16;  // a path
+    params_.most_levels = std::uint32_t(std::clamp<std::uint64_t>(
+        sorted_bytes / (sizeof(gpu::Photon) * usual_photons * settings.photons), 1, GRID_LEVELS));
     params_.sort_lanes = std::bit_ceil(std::clamp(settings.photons / 128, 64u, 4096u));
     params_.scan_blocks = std::clamp(params_.cells / 256, group_, 4096u);
     const auto key_bits = std::uint32_t(std::countr_zero(params_.cells));
@@ -106,7 +110,7 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     buffers_.allocate(BIND_AOVS, "aovs", settings.aovs ? pixels_ * sizeof(gpu::Aovs) : 0, Kind::storage);
     const bool glossy = (features & FEATURE_GLOSS) != 0;
     buffers_.allocate(BIND_HIT_SURFACE, "hit surfaces", glossy ? pixels_ * sizeof(gpu::HitSurface) : 0, Kind::storage);
-    const bool asks = (features & FEATURE_ROUGH) != 0 && (features & FEATURE_SPLIT) == 0;
+    const bool asks = ASKS_FOR_LIGHTS(features);
     buffers_.allocate(BIND_LIGHT_RAYS, "light rays", asks ? pixels_ * sizeof(gpu::LightRay) : 0, Kind::storage);
     buffers_.allocate(BIND_FILM, "film", pixels_ * sizeof(gpu::Film), Kind::storage);
     buffers_.allocate(BIND_CURSOR, "cursors", pixels_ * sizeof(gpu::Cursor), Kind::storage);
@@ -140,16 +144,32 @@ void Integrator::allocate_photons() {
     buffers_.allocate(BIND_PHOTONS, "photons", slots * sizeof(gpu::Photon), Kind::uint_texels);
     buffers_.allocate(BIND_PHOTON_FLUX, "photon flux", slots * sizeof(gpu::PhotonFlux), Kind::storage);
     bindings_.bind(BIND_PHOTON_TEXELS, buffer(BIND_PHOTONS));
-    constexpr std::uint64_t sorted_bytes = sizeof(gpu::Photon) + sizeof(gpu::PhotonFlux) + 2 * sizeof(gpu::uvec2);
-    const std::uint64_t most = std::min(device_.largest_texels() / (slots * sizeof(gpu::Photon)),
-                                        device_.info().memory_bytes / 4 / (slots * sorted_bytes));
-    params_.most_levels = std::uint32_t(std::clamp<std::uint64_t>(most, 1, GRID_LEVELS));
-    if (params_.grid_levels > params_.most_levels) {
-        params_.grid_levels = params_.most_levels;
-        Buffer& grid = buffer(BIND_GRID);
-        grid.upload_value(coarsest(grid.download_value<gpu::Grid>(), params_.most_levels));
-    }
+    const std::uint32_t levels = levels_that_fit(params_.grid_levels);
+    if (levels < params_.grid_levels) limit_levels(levels);
+    params_.grid_levels = levels;
     allocate_sorted();
+}
+
+/// The levels of the grid, `wanted` or fewer, for which sorted photons fit the device, beside what is on it, and sorting
+/// them the loops of its driver. Fewer only where light paths store many more photons than is usual, or memory is short.
+std::uint32_t Integrator::levels_that_fit(std::uint32_t wanted) const {
+    constexpr std::uint64_t bytes = sizeof(gpu::Photon) + sizeof(gpu::PhotonFlux) + 2 * sizeof(gpu::uvec2);
+    const std::uint64_t slots = std::uint64_t(params_.photon_lanes) * params_.photon_capacity;
+    const std::uint64_t memory = device_.info().memory_bytes;
+    const std::uint64_t left = memory - std::min(memory, device_.allocated_bytes());
+    const auto fits = [&](std::uint64_t levels) {
+        return levels * slots * sizeof(gpu::Photon) <= device_.largest_texels() && levels * slots * bytes <= left / 2 &&
+               levels * slots / params_.sort_lanes <= most_sorted_a_lane;
+    };
+    while (wanted > 1 && !fits(wanted)) --wanted;
+    return wanted;
+}
+
+/// No more levels from now on, nor of the grid in force.
+void Integrator::limit_levels(std::uint32_t levels) {
+    params_.most_levels = levels;
+    Buffer& grid = buffer(BIND_GRID);
+    grid.upload_value(coarsest(grid.download_value<gpu::Grid>(), levels));
 }
 
 /// Buffers that hold every photon once a level of the grid.
@@ -258,7 +278,8 @@ void Integrator::launch_rounds(const std::string& kernel, std::uint64_t invocati
         const std::uint32_t last = r + 1 == rounds_.at(pass) ? 1 : 0;
         const gpu::Launch push{.iteration = i, .round = first_round + r, .last_round = last, .offset = 0, .count = 0};
         if (pass == Pass::knn) {
-            commands_.launch_indirect(kernels_.at(kernel), buffer(BIND_STATUS), offsetof(gpu::Status, search_groups), push);
+            commands_.launch_indirect(kernels_.at(kernel), buffer(BIND_STATUS),
+                                      offsetof(gpu::Status, search_groups), push);
         } else {
             launch(kernel, invocations, push);
         }
@@ -337,7 +358,11 @@ bool Integrator::unblock(Pass to) {
             allocate_photons();
             first_round = 0;  // the paths start again and are the same
         }
-        if (blocked & PASS_LEVELS) add_levels(status.levels);
+        if (blocked & PASS_LEVELS) {
+            const std::uint32_t levels = levels_that_fit(status.levels);
+            if (levels < status.levels) limit_levels(levels);  // the grid is planned again
+            add_levels(levels);
+        }
         commands_.begin();
         iterate(completed_, from, to, first_round);
         if (!(blocked & (PASS_CAPACITY | PASS_LEVELS)) || (blocked & PASS_PHOTON)) rounds_[from] *= 2;

@@ -86,6 +86,8 @@ private:
 
     void allocate_photons();
     void allocate_sorted();
+    std::uint32_t levels_that_fit(std::uint32_t wanted) const;
+    void limit_levels(std::uint32_t levels);
     void add_levels(std::uint32_t levels);
     void compile();
     void warm_up(const std::vector<std::string>& kernels);

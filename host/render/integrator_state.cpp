@@ -19,11 +19,16 @@ namespace {
 constexpr std::size_t planned_from = offsetof(gpu::Status, photons);
 constexpr std::uint32_t carried[] = {BIND_PIXELS, BIND_TALLY, BIND_MOMENTS, BIND_FILM, BIND_AOVS, BIND_GRID};
 
+std::span<const std::byte> planned(const gpu::Status& status) {
+    return std::as_bytes(std::span(&status, 1)).subspan(planned_from);
+}
+
 class Hasher {
 public:
     /// The first `bytes` bytes, or all.
     void add(const Buffer& buffer, std::uint64_t bytes) { hash_ = fnv1a(buffer.download<std::uint8_t>(bytes), hash_); }
     void add(const Buffer& buffer) { add(buffer, buffer.bytes()); }
+    void add(std::span<const std::byte> bytes) { hash_ = fnv1a_of(bytes, hash_); }
     template <typename T> void add(const T& value) { hash_ = fnv1a_of(std::span(&value, 1), hash_); }
     std::uint64_t hash() const { return hash_; }
 
@@ -39,7 +44,7 @@ std::vector<std::byte> Integrator::save() const {
         state.insert(state.end(), bytes.begin(), bytes.end());
     };
     const gpu::Status status = buffers_.at(BIND_STATUS).download_value<gpu::Status>();
-    append(std::as_bytes(std::span(&status, 1)).subspan(planned_from));
+    append(planned(status));
     for (const std::uint32_t binding : carried) {
         const Buffer& buffer = buffers_.at(binding);
         append(buffer.download<std::byte>(buffer.bytes()));
@@ -69,7 +74,9 @@ void Integrator::restore(const Report& report, std::span<const std::byte> state)
                                 "room for {} in {}",
                                 grid.levels, grid.entries, params_.most_levels, params_.cells));
     }
-    if (grid.levels > params_.grid_levels) add_levels(grid.levels);
+    const std::uint32_t levels = levels_that_fit(grid.levels);
+    if (levels < grid.levels) limit_levels(levels);
+    if (levels > params_.grid_levels) add_levels(levels);
     status.completed = std::uint32_t(report.iterations);
     buffer(BIND_STATUS).upload_value(status);
     completed_ = status.completed;
@@ -141,8 +148,7 @@ std::uint64_t Integrator::hash_of(Pass pass) const {
             hasher.add(buffers_.at(BIND_FILM));
             add_statistics();
             const auto status = buffers_.at(BIND_STATUS).download_value<gpu::Status>();
-            hasher.add(status.radius_histogram);
-            hasher.add(status.photon_histogram);
+            hasher.add(planned(status));
             break;
         }
     }

@@ -21,7 +21,8 @@ constexpr std::uint32_t max_cut = 6;         // a textured emitter is cut in fou
 constexpr double texels_a_part = 4.0;        // parts that are smaller are not cut
 constexpr int part_samples = 4;              // of a part along either side, to weigh it
 constexpr std::size_t max_parts = 1u << 20;  // of all textured emitters
-constexpr Extent least_map{128, 64};         // pixels of an environment: smaller ones are cut
+constexpr Extent least_map{128, 64};         // columns and rows of an environment: coarser ones are cut
+constexpr std::uint64_t most_cut = 1u << 22; //   into no more pixels than that
 
 double mean(const glm::dvec3& v) {
     return (v.x + v.y + v.z) / 3.0;
@@ -310,11 +311,13 @@ void add_punctual_lights(const Scene& scene, const FlatScene& flat, std::vector<
 }
 
 /// The same radiance from the same directions by a map of at least least_map's columns and rows, so that the area by
-/// which light enters varies little over a pixel, and the power of photons with it.
-Environment cut(const Environment& map) {
-    if (map.size.pixels() >= least_map.pixels()) return map;
+/// which light enters varies little over a pixel, and the power of photons with it; none where that is so, or where it
+/// would take too many pixels.
+std::optional<Environment> cut(const Environment& map) {
     const std::uint32_t columns = (least_map.width + map.size.width - 1) / map.size.width;
     const std::uint32_t rows = (least_map.height + map.size.height - 1) / map.size.height;
+    const std::uint64_t pixels = map.size.pixels() * columns * rows;
+    if (pixels == map.size.pixels() || pixels > most_cut) return std::nullopt;
     Environment fine{{columns * map.size.width, rows * map.size.height}, {}};
     for (std::uint32_t row = 0; row < fine.size.height; ++row) {
         for (std::uint32_t column = 0; column < fine.size.width; ++column) {
@@ -332,7 +335,8 @@ double integral_of_cosine(double angle) {
 
 void add_environment(const Scene& scene, FlatScene& flat, std::vector<WeighedLight>& lights) {
     if (!scene.environment) return;
-    const Environment map = cut(*scene.environment);
+    const std::optional<Environment> fine = cut(*scene.environment);
+    const Environment& map = fine ? *fine : *scene.environment;
     const auto [columns, rows] = map.size;
     // The box shows areas . |direction| of itself, integrated here over the directions of a pixel.
     const glm::dvec3 areas = face_areas(flat);

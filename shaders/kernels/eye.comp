@@ -2,8 +2,8 @@
 // One invocation a pixel: a ray through a random point of the pixel (and of the lens), on to a surface on which photons
 // are gathered. The rule, for every surface alike: paths follow lobes of width 0 (mirrors, smooth glass, smooth coats)
 // and gather on diffuse lobes; between following a rough lobe and gathering on it the path chooses at random, and each
-// way weighs what it finds (followed_weight of include/bsdf.glsl). Whatever it chooses, it asks for a light too that it
-// could have met by following, and weighs the two by the balance heuristic (Veach and Guibas 1995). Of all that a path
+// way weighs what it finds (followed_weight of include/bsdf.glsl). Whatever it chooses, it asks for a light too, and
+// weighs what it could have met by following by the balance heuristic (Veach and Guibas 1995). Of all that a path
 // asks for one is chosen in proportion to what it brings, and one ray traced: else the longest path of a SIMD group
 // would hold up the others twice as long. Reads the scene; writes hit_position, hit_weight, hit_emission, hit_surface
 // in glossy scenes (and gathered, light_rays: the rest of an unfinished path). O(bounces x log triangles). Fails by
@@ -34,10 +34,6 @@ layout(binding = BIND_LIGHT_RAYS, scalar) buffer LightRayBlock { LightRay light_
 #define FIRST_BOUNCE_DIMENSION 2u  // stratified dimensions 0 and 1 place the ray in the pixel
 #define LOBE_DIMENSIONS 4096u      // of random numbers, beyond those of bounces: where in a lobe
 #define LIGHT_DIMENSIONS 8192u     // which light is asked for, and where on it
-
-// Where light is split photons bring caustics alone, and of those an eye path finds what it meets by delta lobes after
-// it has followed a rough one.
-#define ASKS_FOR_LIGHTS ((FEATURES & FEATURE_ROUGH) != 0u && (FEATURES & FEATURE_SPLIT) == 0u)
 
 bool sees_light(uint memory) { return (FEATURES & FEATURE_SPLIT) == 0u || (memory & PATH_CAUSTIC) != 0u; }
 
@@ -72,7 +68,7 @@ void main() {
         distance = hit_emission[pixel].footprint;
         Gathered rest = gathered[pixel];
         direction = rest.flux;
-        if (ASKS_FOR_LIGHTS) {
+        if (ASKS_FOR_LIGHTS(FEATURES)) {
             followed = rest.excess.x;
             leg = rest.excess.y;
             light_ray = light_rays[pixel];
@@ -84,6 +80,7 @@ void main() {
         }
     }
 
+    bool begins = (memory & PATH_BOUNCES) == 0u;
     int steps = int(params.step_budget);
     while (follows && (memory & PATH_BOUNCES) < params.max_depth) {
         --steps;
@@ -109,7 +106,9 @@ void main() {
             }
             if ((FEATURES & FEATURE_ENVIRONMENT) != 0u && sees_light(memory)) {
                 vec3 met = environment_radiance(direction);
-                if (ASKS_FOR_LIGHTS && met != vec3(0.0)) met *= met_weight(followed, environment_density(direction));
+                if (ASKS_FOR_LIGHTS(FEATURES) && met != vec3(0.0)) {
+                    met *= met_weight(followed, environment_density(direction));
+                }
                 emission += throughput * met;
             }
             break;
@@ -143,7 +142,7 @@ void main() {
         }
         if ((surface.front || has(material, SURFACE_DOUBLE_SIDED)) && sees_light(memory)) {
             vec3 met = material.emission;
-            if (ASKS_FOR_LIGHTS && met != vec3(0.0)) {
+            if (ASKS_FOR_LIGHTS(FEATURES) && met != vec3(0.0)) {
                 met *= met_weight(followed, met_density(material, surface, direction, leg));
             }
             emission += throughput * met;
@@ -164,13 +163,14 @@ void main() {
         }
         // The probability that a rough lobe is followed.
         float rough_share = (rough.x + rough.y + rough.z) / (lobes.x + lobes.y + lobes.z + lobes.w);
-        bool asks = ASKS_FOR_LIGHTS && params.light_count > 0u && rough_share > 0.0;
+        bool asks = ASKS_FOR_LIGHTS(FEATURES) && params.light_count > 0u && rough_share > 0.0;
         if (asks) {
             uvec4 bits = random_words(params.seed, launch.iteration, STREAM_EYE, pixel, LIGHT_DIMENSIONS + depth);
             LightSample light = sample_light(bits, u.xy, surface.position);
             vec3 factor = light.radiance * rough_bsdf(bsdf, surface, wo, light.direction, PART_FOLLOWED);
             factor *= abs(dot(light.direction, surface.normal)) * transmittance_to(light, memory, bsdf, surface);
-            // What a path of full length would meet next it does not meet.
+            // What a path of full length would meet next it does not meet. (Rays to lights pass any number of surfaces
+            // that are partly there, of which each costs a path a bounce: where it has too few left that share is lost.)
             if (light.density > 0.0 && (memory & PATH_BOUNCES) < params.max_depth) {
                 float other = rough_share * scatter_density(bsdf, surface, vec4(0.0, rough), wo, light.direction);
                 factor *= light.density / (light.density + other);
@@ -216,7 +216,7 @@ void main() {
         origin = leave(surface, direction);
     }
     // A loop of its own: software Vulkan runs all of a loop's code for every ray of it, and this one hardly shades.
-    while (ASKS_FOR_LIGHTS && light_ray.distance > 0.0 && position.state != HIT_UNFINISHED) {
+    while (ASKS_FOR_LIGHTS(FEATURES) && light_ray.distance > 0.0 && position.state != HIT_UNFINISHED) {
         --steps;
         bool fresh = steps + 1 == int(params.step_budget);
         Hit hit;
@@ -235,7 +235,7 @@ void main() {
         Surface surface = surface_at(hit, light_ray.direction);
         pass_surface(light_ray, surface, hit.t, coverage_of(material_at(hit, light_ray.direction, surface)));
     }
-    if (ASKS_FOR_LIGHTS && position.state == HIT_UNFINISHED) light_rays[pixel] = light_ray;
+    if (ASKS_FOR_LIGHTS(FEATURES) && position.state == HIT_UNFINISHED) light_rays[pixel] = light_ray;
     hit_position[pixel] = position;
     hit_weight[pixel] = weight;
     hit_emission[pixel] = HitEmission(
@@ -245,5 +245,6 @@ void main() {
         uint place = atomicAdd(status.searches, 1u);
         if (place < pixel_count()) searches[place] = pixel;
     }
-    if (rays > 1u) count_rays(rays - 1u);  // the host knows of the first of every pixel
+    if (begins && rays > 0u) --rays;  // the host knows of the first of every pixel
+    if (rays > 0u) count_rays(rays);
 }

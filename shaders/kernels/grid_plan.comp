@@ -1,10 +1,10 @@
 #version 460
-// One invocation: chooses the levels of the grid from the radii in force. Reads the histograms of radii and of photons in
-// discs; writes grid and clears the histograms. O(levels^3 x bins^2). The cost it minimises is that
-// of the gather, in loop trips: segments of rows visited, and photons in the cells visited at the density that discs of
-// that radius have found; of the tables, and of what a level more costs to build. At most some 20,000 loop trips for radii
-// over 10^6, of the 65,535 that software Vulkan runs. Fails where there is no room for so many
-// levels: the pass begins again when there is.
+// One invocation: chooses the levels of the grid from the radii in force. The cost it minimises is that of the gather, in
+// loop trips: segments of rows visited, and photons in the cells visited at the density that discs of that radius have
+// found; of the tables, and of what a level more costs to build. Reads the histograms of radii and of photons in discs;
+// writes grid and clears the histograms. O(levels^2 x bins^2): at most 20,000 loop trips for radii over 10^6 and 50,000 if
+// every bin were in use, of the 65,535 that software Vulkan runs. Fails where there is no room for so many levels: begins
+// again when there is.
 #include "include/kernel.glsl"
 #include "include/rng.glsl"
 #include "include/sampling.glsl"
@@ -15,6 +15,8 @@
 #define ENTRY_COST 1.0     // loop trips of the gather that clearing, counting and scanning an entry of the table costs
 #define PHOTON_COST 15.0   // that sorting a photon into a level costs
 #define CELL_PER_RADIUS 1.2  // at which a disc costs least, about
+
+const float LARGEST_FLOAT = 3.402823466e38;
 
 // Cells of the levels, from the finest on.
 struct Plan {
@@ -27,6 +29,12 @@ float pixels_of[RADIUS_BINS];
 float density_of[RADIUS_BINS];  // photons an area
 
 float bin_radius(uint bin) { return exp2((float(bin) + 0.5) * 0.5 - 24.0); }
+
+// So that cells can be counted along an axis.
+float least_cell() {
+    vec3 extent = params.bounds_high - params.bounds_low;
+    return max(extent.x, max(extent.y, extent.z)) / 1048576.0;
+}
 
 vec3 dims_of(float cell) { return floor((params.bounds_high - params.bounds_low) / cell) + 1.0; }
 
@@ -55,7 +63,9 @@ float gather_cost(uint bin, float cell, uint levels) {
 
 float cost_of(Plan plan) {
     float cost = PHOTON_COST * float(plan.levels - 1u) * float(status.photons);
-    for (uint level = 0u; level < plan.levels; ++level) cost += ENTRY_COST * float(entries_of(plan.cell[level], plan.levels));
+    for (uint level = 0u; level < plan.levels; ++level) {
+        cost += ENTRY_COST * float(entries_of(plan.cell[level], plan.levels));
+    }
     uint level = 0u;
     for (uint bin = lowest_bin; bin <= highest_bin; ++bin) {
         while (level + 1u < plan.levels && bin_radius(bin) > reach_of(plan.cell[level], plan.cell[level + 1u])) ++level;
@@ -69,7 +79,7 @@ float choose_cell(inout Plan plan, uint level) {
     float best = cost_of(plan);
     Plan trial = plan;
     for (uint bin = lowest_bin; bin <= highest_bin + 4u; ++bin) {
-        float cell = bin_radius(bin);
+        float cell = max(bin_radius(bin), least_cell());
         if (level > 0u && cell <= plan.cell[level - 1u]) continue;
         if (level + 1u < plan.levels && cell >= plan.cell[level + 1u]) break;
         trial.cell[level] = cell;
@@ -139,16 +149,15 @@ void main() {
             status.radius_histogram[bin] = status.photon_histogram[bin] = status.photon_histogram_high[bin] = 0u;
         }
     }
-    vec3 extent = params.bounds_high - params.bounds_low;
     grid.origin = params.bounds_low;
     grid.levels = plan.levels;
     grid.entries = 0u;
     for (uint level = 0u; level < GRID_LEVELS; ++level) {
         bool used = level < plan.levels;
-        float cell = max(used ? plan.cell[level] : 0.0, max(extent.x, max(extent.y, extent.z)) / 1048576.0);
+        float cell = max(used ? plan.cell[level] : 0.0, least_cell());
         grid.cell[level] = cell;
         grid.inverse_cell[level] = 1.0 / cell;
-        grid.reach[level] = level + 1u < plan.levels ? reach_of(cell, plan.cell[level + 1u]) : 3.4e38;
+        grid.reach[level] = level + 1u < plan.levels ? reach_of(cell, plan.cell[level + 1u]) : LARGEST_FLOAT;
         grid.dims[level] = uvec4(uvec3(dims_of(cell)), dense(cell, plan.levels) ? 0u : capacity_of(plan.levels) - 1u);
         grid.first[level] = grid.entries;
         if (used) grid.entries += entries_of(cell, plan.levels);

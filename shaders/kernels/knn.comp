@@ -1,10 +1,10 @@
 #version 460
-// Starting radii: one invocation a pixel that sees a diffuse surface and has no seeded radius yet, in any order. Its squared radius
-// becomes the squared distance of the k-th nearest accepted photon of this iteration; strict < in the gather then
-// leaves k - 1 inside, which makes (k - 1) / (pi R^2) unbiased. With fewer than k photons within the largest radius
-// it keeps that one and tries again next iteration: the estimate truncated there is unbiased too.
-// Reads searches, hits, grid, sorted photons; writes pixels, tally, nearest, cursors; gathered[] holds the state of the search
-// (flux.x: largest kept squared distance, flux.y: its index, flux.z: search radius, count: kept).
+// Starting radii: one invocation a pixel that sees a diffuse surface and has no seeded radius yet, in any order. Its
+// squared radius becomes the squared distance of the k-th nearest accepted photon of this iteration; strict < in the
+// gather then leaves k - 1 inside, which makes (k - 1) / (pi R^2) unbiased. With fewer than k photons within the largest
+// radius it keeps that one and tries again next iteration: the estimate truncated there is unbiased too.
+// Reads searches, hits, grid, sorted photons; writes pixels, tally, nearest, cursors; gathered[] holds the state of the
+// search (flux.x: largest kept squared distance, flux.y: its index, flux.z: search radius, count: kept).
 // O(photons in the cells met + k per replacement). Fails by running out of steps: goes on next round.
 #include "include/kernel.glsl"
 #include "include/rng.glsl"
@@ -36,7 +36,7 @@ int keep(inout Gathered kept, float squared, uint pixel) {
 }
 
 void main() {
-    if (invocation() >= status.searches || blocked(PASS_KNN)) return;
+    if (invocation() >= min(status.searches, pixel_count()) || blocked(PASS_KNN)) return;
     uint pixel = searches[invocation()];
 
     // The largest radius: bounded by the pixel's footprint, but not below a disc of k photons at mean density.

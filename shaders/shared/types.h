@@ -59,6 +59,9 @@ using uint = std::uint32_t;
 #define FEATURE_ENVIRONMENT 0x800000u
 #define FEATURE_SPLIT 0x1000000u       // light is split in two: photons bring caustics and what is lit at less than
                                        // near_lights from its lamp, as fixtures are, paths the rest: render/reference.h
+// Eye paths ask for lights where they may follow a rough lobe. Where light is split photons bring caustics alone, and of
+// those an eye path finds what it meets by delta lobes after it has followed a rough one.
+#define ASKS_FOR_LIGHTS(features) (((features) & FEATURE_ROUGH) != 0u && ((features) & FEATURE_SPLIT) == 0u)
 #define FEATURE_PUNCTUAL_LIGHTS (FEATURE_POINT_LIGHTS | FEATURE_SPOT_LIGHTS | FEATURE_DIRECTIONAL_LIGHTS)
 
 #define MAX_RINGS 4
@@ -176,8 +179,8 @@ struct TextureLookup {
     uint unused[2];
 };
 
-// One entry of the alias table of lights; 96 bytes, read as 6 uvec4 texels, two of them for textured lights only. A
-// path that starts here carries `power`: flux of the light / its probability.
+// One entry of the alias table of lights; 96 bytes, read as 6 uvec4 texels, of which photons read two for textured lights
+// only. A path that starts here carries `power`: flux of the light / its probability.
 struct Light {
     vec3 position;     // triangle: v0; point, spot: position
     uint kind;         // LIGHT_*
@@ -189,7 +192,7 @@ struct Light {
                        // alone, times the colour of the pixel drawn and entry_area over its mean in the pixel
     uint double_sided; // triangle
     vec2 corner[3];    // textured: barycentrics of its corners in the triangle that it is a part of
-    uint triangle;     // textured: that triangle, into the leaf-ordered ones
+    uint triangle;     // triangle: into the leaf-ordered ones; textured: that which it is a part of
     uint textured;     // its radiance or alpha comes from textures
 };
 
@@ -343,7 +346,7 @@ struct Grid {
     uvec4 dims[GRID_LEVELS];          // cells an axis; w: 0 dense rows, else mask of the hash table
     float cell[GRID_LEVELS];          // side
     float inverse_cell[GRID_LEVELS];
-    float reach[GRID_LEVELS];         // largest radius that looks here; of the last level in use, and beyond: the largest float
+    float reach[GRID_LEVELS];         // largest radius that looks here; from the last level in use on: the largest float
     uint first[GRID_LEVELS];          // its first entry of the table of cell starts
     uint entries;                     // of that table, in use: at most params.cells
 };
@@ -408,7 +411,6 @@ struct Params {
     float radius_cap;      // largest starting radius
     float radius_floor;    // the cap by footprint never goes below this: a disc of k photons at mean density
     float footprint_cap;   // starting radius in footprints of the pixel
-    float scene_area;
     float inverse_paths;   // 1 / photons; 0 where nothing emits
     float flux_unit;       // power of two, times light_power in [1, 2): with it squares of fluxes are within floats
     float alpha;

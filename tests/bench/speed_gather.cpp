@@ -146,8 +146,8 @@ Table bench_gather(const Bench& bench) {
         for (std::size_t i = 0; i < fields.size(); ++i) {
             const double each = fields[i]->gather() / double(fields[i]->gathered());
             if (i == 0) first = each;
-            table.rows.push_back({cases[i].name, worker.threads, fields[i]->levels(), 1e3 * fields[i]->grid(), 1e3 * fields[i]->gather(),
-                                  fields[i]->gathered(), 1e9 * each, each / first});
+            table.rows.push_back({cases[i].name, worker.threads, fields[i]->levels(), 1e3 * fields[i]->grid(),
+                                  1e3 * fields[i]->gather(), fields[i]->gathered(), 1e9 * each, each / first});
         }
     }
     return table;

@@ -83,6 +83,31 @@ INSTANTIATE_TEST_SUITE_P(Estimators, Checkpoints, testing::ValuesIn(all_estimato
 
 class CheckpointState : public GpuTest {};
 
+TEST_F(CheckpointState, OfAGridOfSeveralLevelsGoesOnWithTheSameBits) {
+    Settings settings = settings_of("cppm");
+    settings.size = Extent{256, 256};  // so many discs that a level more pays
+    settings.photons = 400;
+    Rig whole(room(), settings, plain_device());
+    whole.integrator.run(1);
+    set_two_radii(whole);
+    whole.integrator.run(2);
+    ASSERT_GE(whole.integrator.buffer(BIND_GRID).download_value<gpu::Grid>().levels, 2u);
+    const std::vector<std::byte> state = whole.integrator.save();
+    const Report report = report_of(whole);
+    const auto hashes = [](Rig& rig) {
+        std::vector<std::uint64_t> all;
+        for (int i = 0; i < 3; ++i) {
+            for (const Integrator::PassHash& hash : rig.integrator.run_hashed()) all.push_back(hash.hash);
+        }
+        return all;
+    };
+    const auto wanted = hashes(whole);
+    Rig resumed(room(), settings, plain_device());
+    resumed.integrator.restore(report, state);
+    EXPECT_EQ(hashes(resumed), wanted);
+    EXPECT_EQ(resumed.integrator.resolve().rgb, whole.integrator.resolve().rgb);
+}
+
 TEST_F(CheckpointState, OfAnotherSizeOrWithAnImpossibleGridIsRefused) {
     Rig rig(room(), settings_of("cppm"), plain_device());
     rig.integrator.run(2);

@@ -134,6 +134,22 @@ TEST_F(GridOrder, ManyPhotonsAndManyDigits) {
     check(one, 0, false);
 }
 
+TEST_F(GridOrder, EveryLevelHoldsThePhotonsInOrder) {
+    Settings settings = small(400);
+    settings.size = Extent{256, 256};  // so many discs that a level more pays
+    Rig rig(room(), settings);
+    rig.integrator.run(1);
+    set_two_radii(rig);
+    rig.integrator.run(2);
+    const auto grid = rig.integrator.buffer(BIND_GRID).download_value<gpu::Grid>();
+    ASSERT_GE(grid.levels, 2u);
+    for (std::uint32_t level = 1; level < grid.levels; ++level) {
+        EXPECT_GT(grid.cell[level], grid.cell[level - 1]);
+        EXPECT_GT(grid.reach[level], grid.reach[level - 1]);
+    }
+    expect_order(rig, grid);
+}
+
 TEST_F(GridOrder, PlansFromTheRadiiInForce) {
     Rig rig(room(), small(4096));
     rig.integrator.run(2);  // plans before iterations 0, 1 and 2: the radii were counted after iteration 1
@@ -144,6 +160,12 @@ TEST_F(GridOrder, PlansFromTheRadiiInForce) {
     std::uint32_t counted = 0;
     for (const std::uint32_t bin : status.radius_histogram) counted += bin;
     EXPECT_EQ(counted, diffuse) << "radii in the histogram, pixels that see a diffuse surface";
+    std::uint64_t photons = 0, gathered = 0;
+    for (int bin = 0; bin < RADIUS_BINS; ++bin) {
+        photons += (std::uint64_t(status.photon_histogram_high[bin]) << 32) + status.photon_histogram[bin];
+    }
+    for (const auto& found : rig.all<gpu::Gathered>(BIND_GATHERED)) gathered += found.count;
+    EXPECT_EQ(photons, gathered) << "photons in the histogram, and in the discs";
 }
 
 TEST_F(GridOrder, ExclusiveScanOfAnyRange) {

@@ -52,6 +52,20 @@ struct Rig {
     Integrator integrator;
 };
 
+/// Small discs and large ones, which stay as they are. Before iteration 1, so that the grid of iteration 2 is planned for
+/// them and has several levels.
+inline void set_two_radii(Rig& rig) {
+    auto states = rig.all<gpu::PixelState>(BIND_PIXELS);
+    states.resize(rig.pixels());
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        const float radius = i % 2 == 0 ? 0.3f : 3e-3f;
+        states[i].radius2 = radius * radius;
+        states[i].seeded = 1;
+        states[i].batch = 1e30f;
+    }
+    rig.integrator.buffer(BIND_PIXELS).upload(states);
+}
+
 /// Gathers in iteration 1 with whatever stands in the buffers, in as many rounds as it takes.
 inline void gather(Rig& rig) {
     for (std::uint32_t round = 0; round < 100; ++round) {

@@ -1,5 +1,7 @@
 // The grid as the host handles it; its kernels are tested with them.
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "render/grid.h"
@@ -14,6 +16,8 @@ gpu::Params room_for(std::uint32_t cells, std::uint32_t levels) {
     return params;
 }
 
+constexpr float all_the_rest = std::numeric_limits<float>::max();
+
 /// A hashed level, a coarser one, and dense rows.
 gpu::Grid three_levels() {
     gpu::Grid grid{};
@@ -24,8 +28,9 @@ gpu::Grid three_levels() {
     for (std::uint32_t level = 0; level < 3; ++level) {
         grid.cell[level] = 0.01f * float(level + 1);
         grid.inverse_cell[level] = 1.0f / grid.cell[level];
-        grid.reach[level] = 0.02f * float(level + 1);
+        grid.reach[level] = level < 2 ? 0.02f * float(level + 1) : all_the_rest;
     }
+    grid.reach[3] = all_the_rest;
     grid.first[1] = 64;
     grid.first[2] = 96;
     grid.entries = 120;
@@ -50,10 +55,16 @@ TEST(Grid, WithoutItsFinestLevels) {
         EXPECT_EQ(kept.dims[level], grid.dims[level + 1]);
         EXPECT_EQ(kept.cell[level], grid.cell[level + 1]);
         EXPECT_EQ(kept.inverse_cell[level], grid.inverse_cell[level + 1]);
-        EXPECT_EQ(kept.reach[level], grid.reach[level + 1]);
         EXPECT_EQ(kept.first[level], grid.first[level + 1]);
     }
+    EXPECT_EQ(kept.reach[0], grid.reach[1]);
     EXPECT_EQ(coarsest(grid, 4).levels, 3u);
+    // Kernels made for more levels look at all reaches.
+    for (const std::uint32_t levels : {1u, 2u, 3u}) {
+        for (std::uint32_t level = levels - 1; level < GRID_LEVELS; ++level) {
+            EXPECT_EQ(coarsest(grid, levels).reach[level], all_the_rest) << level << " of " << levels;
+        }
+    }
 }
 
 }  // namespace
