@@ -134,7 +134,13 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
                                          {SPEC_DIGIT_BITS, digit_bits_},
                                          {SPEC_LEVELS, params_.grid_levels}});
     specialization_[SPEC_WORKGROUP] = group_;
-    compile();
+    std::vector<std::string> names;
+    for (const KernelModule& module : kernel_modules()) {
+        if (module.name == "path") continue;  // the path tracer's
+        names.emplace_back(module.name);
+        passes_.push_back({names.back(), 0, 0.0});
+    }
+    compile(names);
 }
 
 /// Buffers whose size follows the number of photons that a lane can store; again when a render needs more.
@@ -185,16 +191,16 @@ void Integrator::allocate_sorted() {
     buffer(BIND_PARAMS).upload_value(params_);
 }
 
-void Integrator::compile() {
-    std::vector<std::string> names;
-    for (const KernelModule& module : kernel_modules()) {
-        const std::string name(module.name);
-        if (name == "path") continue;  // the path tracer's
-        kernels_.emplace(name, Kernel(device_, bindings_, name, module.spirv, specialization_));
-        passes_.push_back({name, 0, 0.0});
-        names.push_back(name);
+/// Some drivers compile a kernel when it first runs. Each runs once for an iteration that is not due, which leaves all
+/// as it is, so that no time of compiling is on the clock.
+void Integrator::compile(const std::vector<std::string>& names) {
+    for (const std::string& name : names) {
+        kernels_.insert_or_assign(name, Kernel(device_, bindings_, name, kernel_module(name).spirv, specialization_));
     }
-    warm_up(names);
+    commands_.begin();
+    const gpu::Launch not_due{.iteration = ~0u, .round = 0, .last_round = 0, .offset = 0, .count = 0};
+    for (const std::string& name : names) launch(name, 1, not_due);
+    commands_.finish();
 }
 
 /// Room for so many levels of the grid, and kernels that know of them.
@@ -202,22 +208,7 @@ void Integrator::add_levels(std::uint32_t levels) {
     params_.grid_levels = levels;
     allocate_sorted();
     specialization_[SPEC_LEVELS] = levels;
-    for (const KernelModule& module : kernel_modules()) {
-        const std::string name(module.name);
-        if (name == "knn" || name == "gather") {
-            kernels_.at(name) = Kernel(device_, bindings_, name, module.spirv, specialization_);
-        }
-    }
-    warm_up({"knn", "gather"});
-}
-
-/// Some drivers compile a kernel when it first runs. Each runs once for an iteration that is not due, which leaves all
-/// as it is, so that no time of compiling is on the clock.
-void Integrator::warm_up(const std::vector<std::string>& kernels) {
-    commands_.begin();
-    const gpu::Launch not_due{.iteration = ~0u, .round = 0, .last_round = 0, .offset = 0, .count = 0};
-    for (const std::string& name : kernels) launch(name, 1, not_due);
-    commands_.finish();
+    compile({"knn", "gather"});
 }
 
 // The algorithm box: every line is one pass over its buffers, each after the one before it.
@@ -227,7 +218,7 @@ void Integrator::iterate(std::uint32_t i, Pass from, Pass to, std::uint32_t firs
     if (runs(Pass::eye)) launch_rounds("eye", pixels_, Pass::eye, i, round(Pass::eye));
     if (runs(Pass::photon)) launch_rounds("photon", params_.photon_lanes, Pass::photon, i, round(Pass::photon));
     if (runs(Pass::grid)) build_grid(i);
-    if (runs(Pass::knn)) launch_rounds("knn", pixels_, Pass::knn, i, round(Pass::knn));
+    if (runs(Pass::knn)) launch_rounds("knn", std::nullopt, Pass::knn, i, round(Pass::knn));
     if (runs(Pass::gather)) launch_rounds("gather", pixels_, Pass::gather, i, round(Pass::gather));
     if (!runs(Pass::update)) return;
     launch("update", pixels_,
@@ -271,17 +262,18 @@ void Integrator::launch(const std::string& kernel, std::uint64_t invocations, co
     commands_.launch(kernels_.at(kernel), invocations, push);
 }
 
-/// As many rounds as the pass has needed so far; the last one blocks what follows where work is left.
-void Integrator::launch_rounds(const std::string& kernel, std::uint64_t invocations, Pass pass, std::uint32_t i,
-                               std::uint32_t first_round) {
+/// As many rounds as the pass has needed so far; the last one blocks what follows where work is left. invocations: none
+/// for those that the device has counted.
+void Integrator::launch_rounds(const std::string& kernel, std::optional<std::uint64_t> invocations, Pass pass,
+                               std::uint32_t i, std::uint32_t first_round) {
     for (std::uint32_t r = 0; r < rounds_.at(pass); ++r) {
         const std::uint32_t last = r + 1 == rounds_.at(pass) ? 1 : 0;
         const gpu::Launch push{.iteration = i, .round = first_round + r, .last_round = last, .offset = 0, .count = 0};
-        if (pass == Pass::knn) {
+        if (invocations) {
+            launch(kernel, *invocations, push);
+        } else {
             commands_.launch_indirect(kernels_.at(kernel), buffer(BIND_STATUS),
                                       offsetof(gpu::Status, search_groups), push);
-        } else {
-            launch(kernel, invocations, push);
         }
     }
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -89,12 +90,11 @@ private:
     std::uint32_t levels_that_fit(std::uint32_t wanted) const;
     void limit_levels(std::uint32_t levels);
     void add_levels(std::uint32_t levels);
-    void compile();
-    void warm_up(const std::vector<std::string>& kernels);
+    void compile(const std::vector<std::string>& names);
     void iterate(std::uint32_t iteration, Pass from, Pass to, std::uint32_t first_round);
     void launch(const std::string& kernel, std::uint64_t invocations, const gpu::Launch& push);
-    void launch_rounds(const std::string& kernel, std::uint64_t invocations, Pass pass, std::uint32_t iteration,
-                       std::uint32_t first_round);
+    void launch_rounds(const std::string& kernel, std::optional<std::uint64_t> invocations, Pass pass,
+                       std::uint32_t iteration, std::uint32_t first_round);
     void build_grid(std::uint32_t iteration);
     void scan(std::uint32_t iteration, std::uint32_t offset, std::uint32_t count);
     void finish();

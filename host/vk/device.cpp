@@ -279,7 +279,7 @@ std::uint32_t Device::busy_lanes() const {
 }
 
 std::uint64_t Device::largest_texels() const {
-    const vk::PhysicalDeviceLimits limits = impl_->physical->getProperties().limits;
+    const auto& limits = impl_->limits;
     return std::min<std::uint64_t>(limits.maxStorageBufferRange, std::uint64_t(limits.maxTexelBufferElements) * 16);
 }
 

@@ -14,21 +14,11 @@ namespace {
 
 using std::numbers::pi;
 
-Scene plane() {
-    Scene scene;
-    add_quad(scene, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add_diffuse(scene, glm::vec3(1.0f)));
-    PunctualLight light;  // never traced: without a light there would be no photon lanes
-    light.position = {0, 0, 1};
-    scene.lights.push_back(light);
-    add_camera(scene, {0, 0, 2}, {0, 0, 0}, 1.0);
-    return scene;
-}
-
 }  // namespace
 
 DiscField::DiscField(Device& device, const Settings& settings, const std::vector<Disc>& discs,
                      const std::vector<glm::dvec2>& photons)
-    : scene_(plane()),
+    : scene_(photon_plane()),
       flat_(flatten(scene_)),
       integrator_(device, flat_, scene_.cameras.at(0), resolve_settings(settings, scene_)) {
     assert(discs.size() == settings.size->pixels() && photons.size() == settings.photons);

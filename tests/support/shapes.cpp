@@ -189,4 +189,12 @@ Scene bare_room(float albedo) {
     return scene;
 }
 
+Scene photon_plane() {
+    Scene scene;
+    add_quad(scene, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add_diffuse(scene, glm::vec3(1.0f)));
+    add_point_light(scene, {0, 0, 1}, glm::vec3(1.0f));  // never traced: without a light there would be no photon lanes
+    add_camera(scene, {0, 0, 2}, {0, 0, 0}, 1.0);
+    return scene;
+}
+
 }  // namespace vkcppm::test

@@ -45,4 +45,7 @@ Scene room();
 /// The same with flat diffuse surfaces only, all albedos `albedo`: nothing but the lamp and the walls.
 Scene bare_room(float albedo);
 
+/// The square [-1, 1]^2 at z = 0 for photons that do not come from lights, seen from above.
+Scene photon_plane();
+
 }  // namespace vkcppm::test

@@ -43,16 +43,6 @@ constexpr std::array all_fields = {
           }},
 };
 
-Scene plane() {
-    Scene scene;
-    add_quad(scene, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add_diffuse(scene, glm::vec3(1.0f)));
-    PunctualLight light;  // never traced: without a light there would be no photon lanes
-    light.position = {0, 0, 1};
-    scene.lights.push_back(light);
-    add_camera(scene, {0, 0, 2}, {0, 0, 0}, 1.0);
-    return scene;
-}
-
 /// The largest search radius over R_1: appm's disc grows up to twice its first one.
 double reach_of(const Settings& settings) { return settings.estimator == "appm" ? 2.0 : 1.0; }
 
@@ -61,7 +51,7 @@ Settings resolve(Settings settings, const Field& field, std::uint32_t side, doub
     // A lane has more than four slots a path. Six standard deviations above the mean.
     const double reach = reach_of(settings), mean = side * side * lambda * reach * reach * field.peak;
     settings.photons = std::uint32_t(std::ceil((mean + 6.0 * std::sqrt(mean * field.cluster)) / 4.0)) + 16;
-    return resolve_settings(settings, plane());
+    return resolve_settings(settings, photon_plane());
 }
 
 }  // namespace
@@ -81,8 +71,8 @@ SyntheticField::SyntheticField(Device& device, Settings settings, const Field& f
                                std::uint64_t seed)
     : field_(field),
       settings_(resolve(settings, field, side, lambda)),
-      flat_(flatten(plane())),
-      integrator_(device, flat_, plane().cameras.at(0), settings_),
+      flat_(flatten(photon_plane())),
+      integrator_(device, flat_, photon_plane().cameras.at(0), settings_),
       lambda_(lambda),
       reach_(reach_of(settings_)),
       random_(seed) {
