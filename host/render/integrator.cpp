@@ -95,24 +95,24 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     buffers_.allocate(BIND_PARAMS, "parameters", sizeof(gpu::Params), Kind::uniform);
     buffers_.allocate(BIND_STATUS, "status", sizeof(gpu::Status), Kind::storage);
     buffers_.allocate(BIND_GRID, "grid", sizeof(gpu::Grid), Kind::storage);
-    buffers_.allocate(BIND_HIT_POSITION, "hit positions", pixels_ * sizeof(gpu::HitPosition), Kind::storage);
-    buffers_.allocate(BIND_HIT_WEIGHT, "hit weights", pixels_ * sizeof(gpu::HitWeight), Kind::storage);
-    buffers_.allocate(BIND_HIT_EMISSION, "hit emission", pixels_ * sizeof(gpu::HitEmission), Kind::storage);
-    buffers_.allocate(BIND_GATHERED, "gathered", pixels_ * sizeof(gpu::Gathered), Kind::storage);
-    buffers_.allocate(BIND_PIXELS, "pixels", pixels_ * sizeof(gpu::PixelState), Kind::storage);
+    buffers_.allocate(BIND_HIT_POSITION, "hit positions", pixels_ * sizeof(gpu::HitPosition), Kind::uint_texels);
+    buffers_.allocate(BIND_HIT_WEIGHT, "hit weights", pixels_ * sizeof(gpu::HitWeight), Kind::uint_texels);
+    buffers_.allocate(BIND_HIT_EMISSION, "hit emission", pixels_ * sizeof(gpu::HitEmission), Kind::uint_texels);
+    buffers_.allocate(BIND_GATHERED, "gathered", pixels_ * sizeof(gpu::Gathered), Kind::uint_texels);
+    buffers_.allocate(BIND_PIXELS, "pixels", pixels_ * sizeof(gpu::PixelState), Kind::uint_texels);
     const std::uint64_t tallies = tally_rows(estimator, settings.rings, settings.sectors);
-    buffers_.allocate(BIND_TALLY, "tally", tallies * pixels_ * sizeof(std::uint32_t), Kind::storage);
+    buffers_.allocate(BIND_TALLY, "tally", tallies * pixels_ * sizeof(std::uint32_t), Kind::word_texels);
     const std::uint64_t moments = moment_rows(estimator, settings.rings, settings.sectors);
-    buffers_.allocate(BIND_MOMENTS, "moments", moments * pixels_ * sizeof(float), Kind::storage);
+    buffers_.allocate(BIND_MOMENTS, "moments", moments * pixels_ * sizeof(float), Kind::word_texels);
     const std::vector<float> quantiles =
         f_thresholds(estimator, settings.rings, settings.sectors, settings.significance);
     buffers_.upload(BIND_QUANTILES, "quantiles", quantiles, Kind::storage);
     buffers_.allocate(BIND_AOVS, "aovs", settings.aovs ? pixels_ * sizeof(gpu::Aovs) : 0, Kind::storage);
     const bool glossy = (features & FEATURE_GLOSS) != 0;
-    buffers_.allocate(BIND_HIT_SURFACE, "hit surfaces", glossy ? pixels_ * sizeof(gpu::HitSurface) : 0, Kind::storage);
+    buffers_.allocate(BIND_HIT_SURFACE, "hit surfaces", glossy ? pixels_ * sizeof(gpu::HitSurface) : 0, Kind::uint_texels);
     const bool asks = ASKS_FOR_LIGHTS(features);
     buffers_.allocate(BIND_LIGHT_RAYS, "light rays", asks ? pixels_ * sizeof(gpu::LightRay) : 0, Kind::storage);
-    buffers_.allocate(BIND_FILM, "film", pixels_ * sizeof(gpu::Film), Kind::storage);
+    buffers_.allocate(BIND_FILM, "film", pixels_ * sizeof(gpu::Film), Kind::word_texels);
     buffers_.allocate(BIND_CURSOR, "cursors", pixels_ * sizeof(gpu::Cursor), Kind::storage);
     buffers_.allocate(BIND_SEARCHES, "searches", pixels_ * sizeof(std::uint32_t), Kind::storage);
     buffers_.allocate(BIND_NEAREST, "nearest", settings.knn * pixels_ * sizeof(float), Kind::storage);
@@ -121,7 +121,6 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     const std::uint64_t counters = std::uint64_t(params_.cells) + 1 + 2 * std::uint64_t(params_.photons) + 1 +
                                    (std::uint64_t(params_.sort_lanes) << digit_bits_) + params_.scan_blocks;
     buffers_.allocate(BIND_COUNTERS, "counters", counters * sizeof(std::uint32_t), Kind::word_texels);
-    bindings_.bind(BIND_COUNTER_TEXELS, buffer(BIND_COUNTERS));
     allocate_photons();
 
     gpu::PixelState pixel{};
@@ -148,8 +147,7 @@ void Integrator::allocate_photons() {
     using Kind = Buffer::Kind;
     const std::uint64_t slots = std::uint64_t(params_.photon_lanes) * params_.photon_capacity;
     buffers_.allocate(BIND_PHOTONS, "photons", slots * sizeof(gpu::Photon), Kind::uint_texels);
-    buffers_.allocate(BIND_PHOTON_FLUX, "photon flux", slots * sizeof(gpu::PhotonFlux), Kind::storage);
-    bindings_.bind(BIND_PHOTON_TEXELS, buffer(BIND_PHOTONS));
+    buffers_.allocate(BIND_PHOTON_FLUX, "photon flux", slots * sizeof(gpu::PhotonFlux), Kind::uint_texels);
     const std::uint32_t levels = levels_that_fit(params_.grid_levels);
     if (levels < params_.grid_levels) limit_levels(levels);
     params_.grid_levels = levels;
@@ -186,8 +184,6 @@ void Integrator::allocate_sorted() {
     buffers_.allocate(BIND_SORTED_FLUX, "sorted photon flux", copies * sizeof(gpu::PhotonFlux), Kind::uint_texels);
     buffers_.allocate(BIND_PAIRS_A, "pairs a", copies * sizeof(gpu::uvec2), Kind::storage);
     buffers_.allocate(BIND_PAIRS_B, "pairs b", copies * sizeof(gpu::uvec2), Kind::storage);
-    bindings_.bind(BIND_SORTED_TEXELS, buffer(BIND_SORTED));
-    bindings_.bind(BIND_FLUX_TEXELS, buffer(BIND_SORTED_FLUX));
     buffer(BIND_PARAMS).upload_value(params_);
 }
 

@@ -65,12 +65,33 @@ void SceneBuffers::allocate(std::uint32_t binding, const std::string& name, std:
     buffers_.erase(binding);
     buffers_.emplace(binding, Buffer(device_, name, bytes, kind));
     bindings_.bind(binding, buffers_.at(binding));
+    if (const auto texels = texels_over(binding)) bindings_.bind(*texels, buffers_.at(binding));
 }
 
 std::map<std::uint32_t, std::uint64_t> SceneBuffers::bytes() const {
     std::map<std::uint32_t, std::uint64_t> all;
     for (const auto& [binding, buffer] : buffers_) all[binding] = buffer.bytes();
     return all;
+}
+
+std::optional<std::uint32_t> texels_over(std::uint32_t binding) {
+    switch (binding) {
+        case BIND_HIT_POSITION: return BIND_HIT_POSITION_TEXELS;
+        case BIND_HIT_WEIGHT: return BIND_HIT_WEIGHT_TEXELS;
+        case BIND_HIT_EMISSION: return BIND_HIT_EMISSION_TEXELS;
+        case BIND_HIT_SURFACE: return BIND_HIT_SURFACE_TEXELS;
+        case BIND_GATHERED: return BIND_GATHERED_TEXELS;
+        case BIND_PIXELS: return BIND_PIXEL_TEXELS;
+        case BIND_TALLY: return BIND_TALLY_TEXELS;
+        case BIND_MOMENTS: return BIND_MOMENT_TEXELS;
+        case BIND_FILM: return BIND_FILM_TEXELS;
+        case BIND_PHOTONS: return BIND_PHOTON_TEXELS;
+        case BIND_PHOTON_FLUX: return BIND_PHOTON_FLUX_TEXELS;
+        case BIND_SORTED: return BIND_SORTED_TEXELS;
+        case BIND_SORTED_FLUX: return BIND_SORTED_FLUX_TEXELS;
+        case BIND_COUNTERS: return BIND_COUNTER_TEXELS;
+        default: return std::nullopt;
+    }
 }
 
 Specialization scene_specialization(const Bvh& bvh, std::uint32_t features) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,8 @@ public:
     /// Throws Error(out_of_device_memory) where the scene does not fit the device.
     SceneBuffers(Device& device, Bindings& bindings, const FlatScene& scene);
 
-    /// A buffer of `bytes` zeros at `binding`, in place of what stood there. Throws Error(out_of_device_memory).
+    /// A buffer of `bytes` zeros at `binding`, and where kernels read it as texels, in place of what stood there. Throws
+    /// Error(out_of_device_memory).
     void allocate(std::uint32_t binding, const std::string& name, std::uint64_t bytes, Buffer::Kind kind);
 
     /// The same that holds `data`.
@@ -44,6 +46,9 @@ private:
     Bindings& bindings_;
     std::map<std::uint32_t, Buffer> buffers_;
 };
+
+/// The binding by which kernels read as texels what stands at a storage binding; none where they do not.
+std::optional<std::uint32_t> texels_over(std::uint32_t binding);
 
 /// Invocations of a work group.
 inline constexpr std::uint32_t workgroup = 64;

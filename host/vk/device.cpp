@@ -76,6 +76,10 @@ std::string missing(const vk::raii::PhysicalDevice& physical) {
         return fmt::format("{} storage buffers a stage, {} are needed", limits.maxPerStageDescriptorStorageBuffers,
                            storage);
     }
+    const std::uint32_t texels = BIND_FIRST_STORAGE - BIND_FIRST_TEXEL;
+    if (std::min(limits.maxPerStageDescriptorSampledImages, limits.maxDescriptorSetSampledImages) < texels) {
+        return fmt::format("{} texel buffers a stage, {} are needed", limits.maxPerStageDescriptorSampledImages, texels);
+    }
     if (limits.maxPushConstantsSize < sizeof(gpu::Launch)) return "push constants are too small";
     return "";
 }

@@ -1,12 +1,12 @@
 // Algorithm 1 of Lin et al. 2020, shared by every estimator that tests the disc.
 
 // Statistic of the disc of the first `rings` rings over its threshold: below 1 the null hypothesis stands.
-float test_ratio(uint pixel, uint rings, PixelState state) {
+float test_ratio(uint rings, PixelState state) {
     switch (ESTIMATOR) {
-        case ESTIMATOR_CPPM_LF: return linear_ratio(pixel, rings);
+        case ESTIMATOR_CPPM_LF: return linear_ratio(rings);
         case ESTIMATOR_FTEST:
-        case ESTIMATOR_FTEST_FOLD: return f_ratio(pixel, rings, state.count);
-        default: return uniform_ratio(pixel, rings);
+        case ESTIMATOR_FTEST_FOLD: return f_ratio(rings, state.count);
+        default: return uniform_ratio(rings);
     }
 }
 
@@ -40,16 +40,17 @@ void forget(uint pixel, inout PixelState state) {
 // becomes the disc (rings have equal areas), or the area shrinks by k where none does; the statistics start again and
 // the batch grows by beta. A disc that has passed with as many photons as counters hold starts them again, too.
 void algorithm1_update(uint pixel, uint found, inout PixelState state) {
-    state.total += found;  // an iteration stores fewer than 2^27 photons: no sum of the tally reaches 2^32
+    state.total += found;  // an iteration stores fewer than 2^27 photons: no sum of the tally reaches 2^31
     if (!batch_is_full(state)) return;
-    state.statistic = test_ratio(pixel, RINGS, state);
+    if (ESTIMATOR != ESTIMATOR_FTEST && ESTIMATOR != ESTIMATOR_FTEST_FOLD) read_tally(pixel);
+    state.statistic = test_ratio(RINGS, state);
     if (state.statistic < 1.0) {
         if (float(state.total) >= MOST_PHOTONS) forget(pixel, state);
         return;
     }
     float factor = params.k;
     for (uint rings = RINGS - 1u; rings > 0u; --rings) {
-        if (test_ratio(pixel, rings, state) < 1.0) {
+        if (test_ratio(rings, state) < 1.0) {
             factor = float(rings) / float(RINGS);
             break;
         }

@@ -18,12 +18,13 @@ float appm_kernel_weight(float q) {
 }
 
 float appm_first_radius2(uint pixel) {
-    return pixels[pixel].count > 0.0 ? moments[row_of(APPM_FIRST_RADIUS2, pixel)] : pixels[pixel].radius2;
+    PixelState state = pixel_at(pixel);
+    return state.count > 0.0 ? moment_at(APPM_FIRST_RADIUS2, pixel) : state.radius2;
 }
 
 // r_d^2 in the iteration at hand, n = count + 1.
 float appm_pilot2(uint pixel) {
-    return APPM_PILOT * APPM_PILOT * appm_first_radius2(pixel) * pow(pixels[pixel].count + 1.0, -0.25);
+    return APPM_PILOT * APPM_PILOT * appm_first_radius2(pixel) * pow(pixel_at(pixel).count + 1.0, -0.25);
 }
 
 // The stencil reaches a step and a bandwidth far.
@@ -31,16 +32,19 @@ float appm_search_radius2(uint pixel, float radius2) { return max(radius2, 4.0 *
 
 // Sums of this invocation, in the order of APPM_SECOND_MOMENT_NOW and APPM_LAPLACIAN_NOW.
 vec2 appm_sums;
+// What all its photons share.
+float appm_radius2;
+float appm_pilot2_now;
+vec3 appm_weight;
 
-void appm_record(uint pixel, Accepted photon, bool inside) {
-    float radius2 = pixels[pixel].radius2;
-    float y = luminance(hit_weight[pixel].weight * photon.power) * (params.inverse_paths * params.flux_unit);
+void appm_record(Accepted photon, bool inside) {
+    float y = luminance(appm_weight * photon.power) * (params.inverse_paths * params.flux_unit);
     if (inside) {
-        appm_sums.x += y * y * (float(params.photons) * appm_kernel_weight(photon.q) / (PI * radius2));
+        appm_sums.x += y * y * (float(params.photons) * appm_kernel_weight(photon.q) / (PI * appm_radius2));
     }
     // Offset in units of r_d; sum over the four neighbours at distance 1, less four times the centre.
-    float pilot2 = appm_pilot2(pixel);
-    vec2 e = photon.v * sqrt(radius2 / pilot2);
+    float pilot2 = appm_pilot2_now;
+    vec2 e = photon.v * sqrt(appm_radius2 / pilot2);
     float stencil = -4.0 * appm_kernel_weight(dot(e, e));
     stencil += appm_kernel_weight(dot(e, e) + 2.0 * e.x + 1.0) + appm_kernel_weight(dot(e, e) - 2.0 * e.x + 1.0);
     stencil += appm_kernel_weight(dot(e, e) + 2.0 * e.y + 1.0) + appm_kernel_weight(dot(e, e) - 2.0 * e.y + 1.0);
@@ -48,7 +52,10 @@ void appm_record(uint pixel, Accepted photon, bool inside) {
 }
 
 void appm_begin(uint pixel) {
-    appm_sums = vec2(moments[row_of(APPM_SECOND_MOMENT_NOW, pixel)], moments[row_of(APPM_LAPLACIAN_NOW, pixel)]);
+    appm_sums = vec2(moment_at(APPM_SECOND_MOMENT_NOW, pixel), moment_at(APPM_LAPLACIAN_NOW, pixel));
+    appm_radius2 = pixel_at(pixel).radius2;
+    appm_pilot2_now = appm_pilot2(pixel);
+    appm_weight = hit_weight_at(pixel).weight;
 }
 
 void appm_flush(uint pixel) {
@@ -59,20 +66,20 @@ void appm_flush(uint pixel) {
 void appm_update(uint pixel, bool diffuse, uint found, inout PixelState state) {
     state.total = add_saturated(state.total, found);
     if (!diffuse) return;
+    float first = sqrt(appm_first_radius2(pixel));
     if (state.count == 0.0) moments[row_of(APPM_FIRST_RADIUS2, pixel)] = state.radius2;
     add(state.count, state.count_low, 1.0);
+    float means[2];  // V, Delta
     for (uint row = 0u; row < 2u; ++row) {
-        float mean = moments[row_of(APPM_SECOND_MOMENT + row, pixel)];
-        float low = moments[row_of(APPM_SECOND_MOMENT_LOW + row, pixel)];
-        average(mean, low, moments[row_of(row, pixel)], state.count);
-        moments[row_of(APPM_SECOND_MOMENT + row, pixel)] = mean;
+        means[row] = moment_at(APPM_SECOND_MOMENT + row, pixel);
+        float low = moment_at(APPM_SECOND_MOMENT_LOW + row, pixel);
+        average(means[row], low, moment_at(row, pixel), state.count);
+        moments[row_of(APPM_SECOND_MOMENT + row, pixel)] = means[row];
         moments[row_of(APPM_SECOND_MOMENT_LOW + row, pixel)] = low;
         moments[row_of(row, pixel)] = 0.0;
     }
-    float first = sqrt(moments[row_of(APPM_FIRST_RADIUS2, pixel)]);
     if (state.total < APPM_PHOTONS) return;
-    float v = moments[row_of(APPM_SECOND_MOMENT, pixel)];
-    float laplacian = moments[row_of(APPM_LAPLACIAN, pixel)];
+    float v = means[0], laplacian = means[1];
     float paths = state.count * float(params.photons);
     // The root first: the quotient itself can leave the range of floats.
     float scale = pow(state.count, -1.0 / 6.0);

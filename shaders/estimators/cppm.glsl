@@ -3,22 +3,16 @@
 
 void cppm_record(Accepted photon) { count(cell_bin(photon.v, photon.q)); }
 
-uint tally_sum(uint pixel, uint cells) {
-    uint sum = 0u;
-    for (uint bin = 0u; bin < cells; ++bin) sum += tally[row_of(bin, pixel)];
-    return sum;
-}
-
 // Chi-squared statistic of uniformity over the disc of the first `rings` rings, sum((c O - S)^2) / (c S), over its
 // threshold. An empty disc passes.
-float uniform_ratio(uint pixel, uint rings) {
+float uniform_ratio(uint rings) {
     uint cells = rings * RING_CELLS;
-    uint sum = tally_sum(pixel, cells);
+    uint sum = observed_in(cells);
     if (sum == 0u) return 0.0;
-    float statistic = 0.0;
+    float squares = 0.0;
     for (uint bin = 0u; bin < cells; ++bin) {
-        float difference = scaled_difference(cells, tally[row_of(bin, pixel)], sum);
-        statistic += difference * (difference / (float(cells) * float(sum)));
+        float difference = scaled_difference(cells, observed[bin], sum);
+        squares += difference * difference;
     }
-    return statistic / params.threshold[rings - 1u];
+    return squares / (float(cells) * float(sum) * params.threshold[rings - 1u]);
 }

@@ -12,16 +12,16 @@ float ring_slope(uint ring, uint rings) {
 // radius taken as 1), over its threshold; two degrees of freedom fewer. Least squares, Eq. (10); |k| at most c = 1/pi
 // keeps f positive, Eq. (12)-(15). Eq. (9) with the factor n_a^(-3/2): the printed n_a^(2/3) is a slip of the pen that
 // makes probabilities negative.
-float linear_ratio(uint pixel, uint rings) {
+float linear_ratio(uint rings) {
     uint cells = rings * RING_CELLS;
-    uint sum = tally_sum(pixel, cells);
+    uint sum = observed_in(cells);
     if (sum == 0u) return 0.0;
     vec2 moment = vec2(0.0);
     float norm = 0.0;
     for (uint ring = 0u; ring < rings; ++ring) {
         float slope = ring_slope(ring, rings);
         for (uint s = 0u; s < SECTORS; ++s) {
-            moment += float(tally[row_of(ring * SECTORS + s, pixel)]) * slope * params.sector_centre[s];
+            moment += float(observed[ring * SECTORS + s]) * slope * params.sector_centre[s];
         }
         norm += 0.5 * float(SECTORS) * slope * slope;
     }
@@ -38,7 +38,7 @@ float linear_ratio(uint pixel, uint rings) {
             float tilt = slope * dot(k, params.sector_centre[s]);
             float p = max(share + tilt, 1e-6 * share);
             // O - S p = (c O - S) / c - S (p - 1/c)
-            float difference = scaled_difference(cells, tally[row_of(ring * SECTORS + s, pixel)], sum) * share -
+            float difference = scaled_difference(cells, observed[ring * SECTORS + s], sum) * share -
                                float(sum) * (p - share);
             statistic += difference * (difference / (float(sum) * p));
         }

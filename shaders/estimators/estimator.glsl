@@ -41,9 +41,9 @@ void record(uint pixel, Accepted photon, bool inside) {
         case ESTIMATOR_CPPM_LF: cppm_record(photon); break;
         case ESTIMATOR_CPPM_GOF: cppm_gof_record(pixel, photon); break;
         case ESTIMATOR_CPPM_FOLD: cppm_fold_record(photon); break;
-        case ESTIMATOR_APPM: appm_record(pixel, photon, inside); break;
+        case ESTIMATOR_APPM: appm_record(photon, inside); break;
         case ESTIMATOR_FTEST:
-        case ESTIMATOR_FTEST_FOLD: ftest_record(pixel, photon); break;
+        case ESTIMATOR_FTEST_FOLD: ftest_record(photon); break;
         default: break;
     }
 }

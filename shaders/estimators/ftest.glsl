@@ -11,45 +11,57 @@ const uint FTEST_SQUARES = 2u * DISC_CELLS;
 const uint FTEST_LOW = DISC_CELLS + RINGS;  // from a mean or a sum of squares to its low part
 const uint FTEST_MOMENTS = 3u * DISC_CELLS + 2u * RINGS;
 
-// The sum that stands in `row` and what it lacks.
-void add_moment(uint row, uint pixel, float value) {
-    float sum = moments[row_of(row, pixel)];
-    float low = moments[row_of(row + FTEST_LOW, pixel)];
-    add(sum, low, value);
-    moments[row_of(row, pixel)] = sum;
-    moments[row_of(row + FTEST_LOW, pixel)] = low;
-}
-
 layout(binding = BIND_QUANTILES, scalar) readonly buffer QuantileBlock { float f_quantiles[]; };
 
 // Contributions a cell that this invocation has accepted, in registers as `counted`.
 float contributed[DISC_CELLS];
+vec3 ftest_albedo;
 
-void ftest_record(uint pixel, Accepted photon) {
+void ftest_record(Accepted photon) {
     uint bin = cell_bin(photon.v, photon.q);
-    float x = luminance(hit_albedo(pixel) * photon.power) * params.flux_unit;
+    float x = luminance(ftest_albedo * photon.power) * params.flux_unit;
     for (uint cell = 0u; cell < DISC_CELLS; ++cell) contributed[cell] += cell == bin ? x : 0.0;
 }
 
 // The sums go on from where the round before left them: the same additions in the same order, however work is split.
 void ftest_begin(uint pixel) {
-    for (uint cell = 0u; cell < DISC_CELLS; ++cell) contributed[cell] = moments[row_of(cell, pixel)];
+    for (uint cell = 0u; cell < DISC_CELLS; ++cell) contributed[cell] = moment_at(cell, pixel);
+    ftest_albedo = hit_albedo(pixel);
 }
 
 void ftest_flush(uint pixel) {
     for (uint cell = 0u; cell < DISC_CELLS; ++cell) moments[row_of(cell, pixel)] = contributed[cell];
 }
 
-// Takes this iteration's sums as one more sample of every cell.
+// Means of the cells, sums of squares of the rings: of all samples so far.
+float cell_mean[DISC_CELLS];
+float ring_squares[RINGS];
+
+// Reads them; where the pixel is `diffuse`, takes this iteration's sums as one more sample of every cell.
 void ftest_sample(uint pixel, bool diffuse, inout PixelState state) {
-    if (!diffuse) return;
-    add(state.count, state.count_low, 1.0);
-    for (uint bin = 0u; bin < DISC_CELLS; ++bin) {
-        float x = moments[row_of(bin, pixel)];
-        float deviation = x - moments[row_of(FTEST_MEANS + bin, pixel)];
-        add_moment(FTEST_MEANS + bin, pixel, deviation / state.count);
-        add_moment(FTEST_SQUARES + bin / RING_CELLS, pixel, deviation * (x - moments[row_of(FTEST_MEANS + bin, pixel)]));
-        moments[row_of(bin, pixel)] = 0.0;
+    if (diffuse) add(state.count, state.count_low, 1.0);
+    for (uint ring = 0u; ring < RINGS; ++ring) {
+        float squares = moment_at(FTEST_SQUARES + ring, pixel);
+        float squares_low = moment_at(FTEST_SQUARES + ring + FTEST_LOW, pixel);
+        for (uint bin = ring * RING_CELLS; bin < (ring + 1u) * RING_CELLS; ++bin) {
+            float mean = moment_at(FTEST_MEANS + bin, pixel);
+            float mean_low = moment_at(FTEST_MEANS + bin + FTEST_LOW, pixel);
+            if (diffuse) {
+                float x = moment_at(bin, pixel);
+                float deviation = x - mean;
+                add(mean, mean_low, deviation / state.count);
+                add(squares, squares_low, deviation * (x - mean));
+                moments[row_of(FTEST_MEANS + bin, pixel)] = mean;
+                moments[row_of(FTEST_MEANS + bin + FTEST_LOW, pixel)] = mean_low;
+                moments[row_of(bin, pixel)] = 0.0;
+            }
+            cell_mean[bin] = mean;
+        }
+        if (diffuse) {
+            moments[row_of(FTEST_SQUARES + ring, pixel)] = squares;
+            moments[row_of(FTEST_SQUARES + ring + FTEST_LOW, pixel)] = squares_low;
+        }
+        ring_squares[ring] = squares;
     }
 }
 
@@ -63,19 +75,19 @@ float f_threshold(uint rings, float m) {
 
 // F = [m sum(mean_i - mean)^2 / (n - 1)] / [within / (n (m - 1))] over n cells, over its threshold. Fewer than three
 // samples pass, and so do cells that are all equal.
-float f_ratio(uint pixel, uint rings, float m) {
+float f_ratio(uint rings, float m) {
     if (m < 3.0) return 0.0;
     uint cells = rings * RING_CELLS;
     float mean = 0.0;
-    for (uint bin = 0u; bin < cells; ++bin) mean += moments[row_of(FTEST_MEANS + bin, pixel)];
+    for (uint bin = 0u; bin < cells; ++bin) mean += cell_mean[bin];
     mean /= float(cells);
     float between = 0.0;
     for (uint bin = 0u; bin < cells; ++bin) {
-        float deviation = moments[row_of(FTEST_MEANS + bin, pixel)] - mean;
+        float deviation = cell_mean[bin] - mean;
         between += deviation * deviation;
     }
     float within = 0.0;
-    for (uint ring = 0u; ring < rings; ++ring) within += moments[row_of(FTEST_SQUARES + ring, pixel)];
+    for (uint ring = 0u; ring < rings; ++ring) within += ring_squares[ring];
     if (between == 0.0) return 0.0;
     if (within == 0.0) return 3.0e38;
     float f = (m * between / float(cells - 1u)) / (within / (float(cells) * (m - 1.0)));

@@ -38,21 +38,26 @@ void tally_begin() {
 
 void tally_flush(uint pixel) {
     for (uint bin = 0u; bin < DISC_CELLS; ++bin) {
-        tally[row_of(bin, pixel)] += counted[bin / 2u] >> (16u * (bin % 2u)) & 0xffffu;
+        uint found = counted[bin / 2u] >> (16u * (bin % 2u)) & 0xffffu;
+        tally[row_of(bin, pixel)] = tally_at(bin, pixel) + found;
     }
 }
 
-// c * observed - sum, exact in 64 bits, then rounded once: the textbook form of chi-squared cancels in floats.
-float scaled_difference(uint cells, uint observed, uint sum) {
-    uint high, low, borrow;
-    umulExtended(cells, observed, high, low);
-    low = usubBorrow(low, sum, borrow);
-    high -= borrow;
-    bool negative = (high & 0x80000000u) != 0u;
-    if (negative) {
-        low = ~low + 1u;
-        high = ~high + (low == 0u ? 1u : 0u);
-    }
-    float magnitude = float(high) * 4294967296.0 + float(low);
-    return negative ? -magnitude : magnitude;
+// The pixel's tally, read once for all tests of the disc.
+uint observed[DISC_CELLS];
+
+void read_tally(uint pixel) {
+    for (uint bin = 0u; bin < DISC_CELLS; ++bin) observed[bin] = tally_at(bin, pixel);
+}
+
+uint observed_in(uint cells) {
+    uint sum = 0u;
+    for (uint bin = 0u; bin < cells; ++bin) sum += observed[bin];
+    return sum;
+}
+
+// cells * count - sum: the textbook form of chi-squared cancels in floats. What is left of it here is exact up to 2^24 and
+// relative to a rounding error beyond, since the mean is taken off in integers. sum: at most 2^31.
+float scaled_difference(uint cells, uint count, uint sum) {
+    return float(int(count - sum / cells)) * float(cells) - float(sum % cells);
 }

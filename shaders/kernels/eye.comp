@@ -60,13 +60,14 @@ void main() {
     if (launch.round == 0u) {
         camera_ray(pixel, launch.iteration, origin, direction, distance);
     } else {
-        if (hit_state(pixel) != HIT_UNFINISHED) return;
-        origin = hit_position[pixel].position;
-        throughput = hit_weight[pixel].weight;
-        memory = hit_weight[pixel].normal;
-        emission = hit_emission[pixel].emission;
-        distance = hit_emission[pixel].footprint;
-        Gathered rest = gathered[pixel];
+        HitPosition left = hit_position_at(pixel);
+        if ((left.state & HIT_MASK) != HIT_UNFINISHED) return;
+        origin = left.position;
+        throughput = hit_weight_at(pixel).weight;
+        memory = hit_weight_at(pixel).normal;
+        emission = hit_emission_at(pixel).emission;
+        distance = hit_emission_at(pixel).footprint;
+        Gathered rest = gathered_at(pixel);
         direction = rest.flux;
         if (ASKS_FOR_LIGHTS(FEATURES)) {
             followed = rest.excess.x;
@@ -93,7 +94,7 @@ void main() {
             block_after(PASS_EYE);
             position = HitPosition(origin, HIT_UNFINISHED);
             weight = HitWeight(throughput, memory);
-            gathered[pixel] = Gathered(direction, HIT_UNFINISHED, vec3(followed, leg, 0.0));
+            gathered[pixel] = Gathered(direction, HIT_UNFINISHED, vec3(followed, leg, 0.0), 0u);
             break;
         }
         ++rays;
@@ -241,7 +242,7 @@ void main() {
     hit_emission[pixel] = HitEmission(
         emission, (position.state & HIT_MASK) == HIT_UNFINISHED ? distance : distance * params.pixel_radius);
     // The knn pass, which has little to do after the first iterations, goes through these alone.
-    if ((position.state & HIT_DIFFUSE) != 0u && pixels[pixel].seeded == 0u) {
+    if ((position.state & HIT_DIFFUSE) != 0u && pixel_at(pixel).seeded == 0u) {
         uint place = atomicAdd(status.searches, 1u);
         if (place < pixel_count()) searches[place] = pixel;
     }

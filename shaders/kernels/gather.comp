@@ -23,11 +23,11 @@
 #include "include/pixels.glsl"
 #include "estimators/estimator.glsl"
 
-layout(binding = BIND_FLUX_TEXELS) uniform usamplerBuffer sorted_flux;
+layout(binding = BIND_SORTED_FLUX_TEXELS) uniform usamplerBuffer sorted_flux;
 
 // The surface that the eye path ended on, as it met it.
 void glossy_hit(uint pixel, out Surface surface, out Bsdf bsdf, out vec3 outgoing) {
-    HitSurface record = hit_surface[pixel];
+    HitSurface record = hit_surface_at(pixel);
     outgoing = unpack_direction(record.outgoing);
     Hit hit = Hit(0.0, record.triangle, record.barycentric);
     surface = surface_at(hit, -outgoing);
@@ -46,21 +46,22 @@ void main() {
     uint pixel = invocation_pixel();
     if (pixel >= pixel_count() || blocked(PASS_GATHER)) return;
     Cursor cursor = Cursor(uvec3(CURSOR_START), 0u);
-    Gathered sum = Gathered(vec3(0.0), 0u, vec3(0.0));
-    if (!gathers(pixel)) {
+    Gathered sum = Gathered(vec3(0.0), 0u, vec3(0.0), 0u);
+    HitPosition hit = hit_position_at(pixel);
+    if (!gathers(hit)) {
         gathered[pixel] = sum;
         return;
     }
     if (launch.round > 0u) {
         cursor = cursors[pixel];
         if (cursor.cell.x == CURSOR_DONE) return;
-        sum = gathered[pixel];
+        sum = gathered_at(pixel);
     }
 
-    vec3 position = hit_position[pixel].position;
-    vec3 normal = unpack_direction(hit_weight[pixel].normal);
-    bool both_sides = hit_state(pixel) == HIT_BOTH_SIDES;
-    float radius2 = pixels[pixel].radius2;
+    vec3 position = hit.position;
+    vec3 normal = unpack_direction(hit_weight_at(pixel).normal);
+    bool both_sides = (hit.state & HIT_MASK) == HIT_BOTH_SIDES;
+    float radius2 = pixel_at(pixel).radius2;
     float inverse_radius = inversesqrt(radius2);
     vec3 tangent, bitangent;
     tangents(normal, tangent, bitangent);

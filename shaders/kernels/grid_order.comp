@@ -8,9 +8,9 @@
 layout(binding = BIND_PAIRS_A, scalar) buffer PairBlockA { uvec2 pairs_a[]; };
 layout(binding = BIND_PAIRS_B, scalar) buffer PairBlockB { uvec2 pairs_b[]; };
 layout(binding = BIND_PHOTON_TEXELS) uniform usamplerBuffer photons;
-layout(binding = BIND_PHOTON_FLUX, scalar) readonly buffer FluxBlock { PhotonFlux photon_flux[]; };
+layout(binding = BIND_PHOTON_FLUX_TEXELS) uniform usamplerBuffer fluxes;
 layout(binding = BIND_SORTED, scalar) writeonly buffer SortedBlock { uvec4 sorted[]; };  // Photon
-layout(binding = BIND_SORTED_FLUX, scalar) writeonly buffer SortedFluxBlock { PhotonFlux sorted_flux[]; };
+layout(binding = BIND_SORTED_FLUX, scalar) writeonly buffer SortedFluxBlock { uvec4 sorted_flux[]; };  // PhotonFlux
 layout(binding = BIND_COUNTERS, scalar) readonly buffer CounterBlock { uint counters[]; };
 
 void main() {
@@ -21,6 +21,6 @@ void main() {
     for (uint i = invocation(); i < total; i += stride) {
         uint slot = in_a ? pairs_a[i].y : pairs_b[i].y;
         sorted[i] = texelFetch(photons, int(slot));
-        sorted_flux[i] = photon_flux[slot];
+        sorted_flux[i] = texelFetch(fluxes, int(slot));
     }
 }

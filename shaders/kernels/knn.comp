@@ -40,33 +40,34 @@ void main() {
     uint pixel = searches[invocation()];
 
     // The largest radius: bounded by the pixel's footprint, but not below a disc of k photons at mean density.
-    float cap = sqrt(pixels[pixel].radius2);
+    float cap = sqrt(pixel_at(pixel).radius2);
     Gathered kept;
     Cursor cursor = Cursor(uvec3(CURSOR_START), 0u);
     if (launch.round == 0u) {
         bool first = cap == 0.0;
         if (first) {
             cap = min(params.radius_cap,
-                      max(params.radius_floor, params.footprint_cap * hit_emission[pixel].footprint));
+                      max(params.radius_floor, params.footprint_cap * hit_emission_at(pixel).footprint));
             if ((FEATURES & FEATURE_SPLIT) != 0u) {
                 // A reference does not let its photons choose their discs.
-                cap = params.footprint_cap * hit_emission[pixel].footprint;
+                cap = params.footprint_cap * hit_emission_at(pixel).footprint;
                 pixels[pixel].seeded = 1u;
             }
             pixels[pixel].radius2 = cap * cap;
         }
         if ((FEATURES & FEATURE_SPLIT) != 0u) return;
         // A pixel that failed before will hardly find k photons nearby: it looks through its whole disc at once.
-        kept = Gathered(vec3(-1.0, 0.0, first ? min(cap, grid.cell[0]) : cap), 0u, vec3(0.0));
+        kept = Gathered(vec3(-1.0, 0.0, first ? min(cap, grid.cell[0]) : cap), 0u, vec3(0.0), 0u);
     } else {
         cursor = cursors[pixel];
         if (cursor.cell.x == CURSOR_DONE) return;
-        kept = gathered[pixel];
+        kept = gathered_at(pixel);
     }
 
-    vec3 position = hit_position[pixel].position;
-    vec3 normal = unpack_direction(hit_weight[pixel].normal);
-    bool both_sides = hit_state(pixel) == HIT_BOTH_SIDES;
+    HitPosition hit = hit_position_at(pixel);
+    vec3 position = hit.position;
+    vec3 normal = unpack_direction(hit_weight_at(pixel).normal);
+    bool both_sides = (hit.state & HIT_MASK) == HIT_BOTH_SIDES;
     int steps = int(params.step_budget);
     CellBox box;
     Walk walk;
@@ -85,7 +86,7 @@ void main() {
             }
         })
         if (!walked(cursor, box) || kept.count == params.knn || kept.flux.z >= cap) break;
-        kept = Gathered(vec3(-1.0, 0.0, min(cap, 2.0 * kept.flux.z)), 0u, vec3(0.0));
+        kept = Gathered(vec3(-1.0, 0.0, min(cap, 2.0 * kept.flux.z)), 0u, vec3(0.0), 0u);
         cursor = Cursor(uvec3(CURSOR_START), 0u);
     }
     if (!walked(cursor, box)) {
@@ -96,7 +97,7 @@ void main() {
     }
     if (kept.count == params.knn) {
         // What was counted with the largest radius says nothing about this one.
-        PixelState state = pixels[pixel];
+        PixelState state = pixel_at(pixel);
         state.radius2 = max(kept.flux.x, RADIUS2_MIN);
         state.radius2_low = 0.0;
         state.seeded = 1u;

@@ -11,21 +11,31 @@
 #include "include/pixels.glsl"
 #include "estimators/estimator.glsl"
 
-layout(binding = BIND_FILM, scalar) buffer FilmBlock { Film film[]; };
+layout(binding = BIND_FILM, scalar) writeonly buffer FilmBlock { Film film[]; };
+layout(binding = BIND_FILM_TEXELS) uniform usamplerBuffer films;
+
+Film film_at(uint pixel) {
+    Film f;
+    for (int c = 0; c < 3; ++c) {
+        f.sum[c] = uintBitsToFloat(texelFetch(films, int(pixel) * 6 + c).x);
+        f.low[c] = uintBitsToFloat(texelFetch(films, int(pixel) * 6 + 3 + c).x);
+    }
+    return f;
+}
 
 void main() {
     uint pixel = invocation_pixel();
     if (pixel >= pixel_count() || blocked(0u)) return;
-    PixelState state = pixels[pixel];
-    vec3 estimate = hit_emission[pixel].emission;
-    bool diffuse = gathers(pixel);
-    Gathered sum = gathered[pixel];
+    PixelState state = pixel_at(pixel);
+    vec3 estimate = hit_emission_at(pixel).emission;
+    bool diffuse = gathers(hit_position_at(pixel));
+    Gathered sum = gathered_at(pixel);
     if (diffuse) {
         // L = W rho / pi * sum(power) / (pi R^2 J), the radius being that before this update.
-        estimate += hit_weight[pixel].weight * sum.flux * (params.inverse_paths / (PI * state.radius2));
+        estimate += hit_weight_at(pixel).weight * sum.flux * (params.inverse_paths / (PI * state.radius2));
     }
     if (finite(estimate)) {
-        Film f = film[pixel];
+        Film f = film_at(pixel);
         add(f.sum, f.low, estimate);
         film[pixel] = f;
     } else {

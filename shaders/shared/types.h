@@ -256,15 +256,16 @@ struct LightRay {
 };
 #define NO_TRIANGLE 0xffffffffu
 
-// Sum of one pass of the gather over a pixel's disc. While an eye path is unfinished: the rest of what it remembers.
+// Sum of one pass of the gather over a pixel's disc, read as 2 texels. While an eye path is unfinished: the rest of what it remembers.
 struct Gathered {
     vec3 flux;         // sum of photon power * correction, without the hit's weight; unfinished: direction of the ray
     uint count;        // accepted photons; unfinished: the state that the path ends in, HIT_UNFINISHED: it goes on
     vec3 excess;       // what rounding has left too much in flux (Kahan 1965); unfinished: the density with which rough
                        // lobes gave the direction, the length since the last vertex, 0
+    uint unused;
 };
 
-// What a pixel remembers between iterations.
+// What a pixel remembers between iterations, read as 3 texels.
 struct PixelState {
     float radius2;     // R^2 in force, 0 before the pixel first saw a diffuse surface
     uint seeded;       // 1 once the k-th nearest photon gave the radius; 0: radius2 is the cap
@@ -278,6 +279,7 @@ struct PixelState {
     float statistic;   // of the last test of the whole disc, over its threshold
     float radius2_low; // radius2 + radius2_low: R^2 where a schedule shrinks it by little in every iteration
     float count_low;   // count + count_low: the count, beyond what a float holds
+    uint unused;
 };
 
 // What a picture's first surfaces are like: sums over the iterations in which the pixel met one.
@@ -443,7 +445,7 @@ static_assert(sizeof(SurfaceMaterial) == 144 && sizeof(TextureLookup) == 48 && s
 static_assert(sizeof(Photon) == 16 && sizeof(PhotonFlux) == 16);
 static_assert(sizeof(HitPosition) == 16 && sizeof(HitWeight) == 16 && sizeof(HitEmission) == 16 &&
               sizeof(HitSurface) == 16);
-static_assert(sizeof(Gathered) == 28 && sizeof(Film) == 24 && sizeof(LightRay) == 44);
+static_assert(sizeof(Gathered) == 32 && sizeof(PixelState) == 48 && sizeof(Film) == 24 && sizeof(LightRay) == 44);
 static_assert(sizeof(Launch) <= 128);
 }  // namespace vkcppm::gpu
 #endif

@@ -21,9 +21,9 @@
 #define MEMBERS_HIT_WEIGHT X(weight) X(normal)
 #define MEMBERS_HIT_EMISSION X(emission) X(footprint)
 #define MEMBERS_HIT_SURFACE X(triangle) X(barycentric) X(outgoing)
-#define MEMBERS_GATHERED X(flux) X(count) X(excess)
+#define MEMBERS_GATHERED X(flux) X(count) X(excess) X(unused)
 #define MEMBERS_PIXEL_STATE X(radius2) X(seeded) X(count) X(total) X(batch) X(rejections) \
-    X(photons) X(seen) X(statistic) X(radius2_low) X(count_low)
+    X(photons) X(seen) X(statistic) X(radius2_low) X(count_low) X(unused)
 #define MEMBERS_AOVS X(albedo) X(normal) X(depth) X(hits) X(albedo_low) X(normal_low) X(depth_low)
 #define MEMBERS_FILM X(sum) X(low)
 #define MEMBERS_PATH_STATE X(origin) X(path) X(direction) X(memory) X(power) X(stored) X(power0) X(begin) X(next)

@@ -20,6 +20,7 @@
 #include "reference/estimator.h"
 #include "render/estimators.h"
 #include "render/kernels.h"
+#include "render/scene_buffers.h"
 #include "support/gpu.h"
 #include "support/names.h"
 #include "support/rig.h"
@@ -133,7 +134,7 @@ TEST_P(Update, DecidesAsTheReference) {
             if (!diffuse) state.found = 0;  // and some never saw a surface
             if (i % 32 == 0) state.pixel.radius2 = 0.0f;
             pixel_states.push_back(state.pixel);
-            gathered.push_back({glm::vec3(0.0f), state.found, glm::vec3(0.0f)});
+            gathered.push_back({glm::vec3(0.0f), state.found, glm::vec3(0.0f), 0});
             hits.push_back({glm::vec3(0.0f), diffuse ? HIT_DIFFUSE : HIT_NONE});
             for (std::size_t bin = 0; !tally.empty() && bin < state.tally.size(); ++bin)
                 tally[bin * pixels + i] = state.tally[bin];
@@ -238,7 +239,7 @@ TEST_F(FilmSum, AddsTheEstimateWithTheRadiusBeforeTheUpdate) {
         hits.push_back({glm::vec3(0.0f), i % 4 == 0 ? HIT_NONE : HIT_DIFFUSE});
         weights.push_back({color(-3.0, 0.0), 0});
         emissions.push_back({i % 3 == 0 ? color(-2.0, 3.0) : glm::vec3(0.0f), 0.0f});
-        gathered.push_back({color(-6.0, 2.0), 9, glm::vec3(0.0f)});
+        gathered.push_back({color(-6.0, 2.0), 9, glm::vec3(0.0f), 0});
         if (i % 1000 == 7) {
             gathered.back().flux[int(i % 3)] =
                 i % 2 == 0 ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
@@ -310,17 +311,19 @@ TEST_F(FilmSum, ManyAdditionsDoNotStagnate) {
     Bindings bindings(plain_device());
     bindings.bind(BIND_PARAMS, parameters);
     std::map<std::uint32_t, Buffer> buffers;
-    const auto add = [&](std::uint32_t binding, std::uint64_t bytes) -> Buffer& {
-        Buffer& buffer =
-            buffers.emplace(binding, Buffer(plain_device(), "film test", bytes, Buffer::Kind::storage)).first->second;
+    using Kind = Buffer::Kind;
+    const auto add = [&](std::uint32_t binding, Kind kind) -> Buffer& {
+        Buffer& buffer = buffers.emplace(binding, Buffer(plain_device(), "film test", 4096, kind)).first->second;
         bindings.bind(binding, buffer);
+        if (const auto texels = texels_over(binding)) bindings.bind(*texels, buffer);
         return buffer;
     };
-    for (const std::uint32_t binding : {BIND_STATUS, BIND_HIT_POSITION, BIND_HIT_WEIGHT, BIND_GATHERED, BIND_PIXELS,
-                                        BIND_TALLY, BIND_MOMENTS, BIND_QUANTILES, BIND_FILM}) {
-        add(binding, 4096);
+    for (const std::uint32_t binding : {BIND_STATUS, BIND_QUANTILES}) add(binding, Kind::storage);
+    for (const std::uint32_t binding : {BIND_HIT_POSITION, BIND_HIT_WEIGHT, BIND_GATHERED, BIND_PIXELS}) {
+        add(binding, Kind::uint_texels);
     }
-    Buffer& emission = add(BIND_HIT_EMISSION, 4096);
+    for (const std::uint32_t binding : {BIND_TALLY, BIND_MOMENTS, BIND_FILM}) add(binding, Kind::word_texels);
+    Buffer& emission = add(BIND_HIT_EMISSION, Kind::uint_texels);
     const auto set = [&](const std::vector<float>& values) {
         std::vector<gpu::HitEmission> records;
         for (const float value : values) records.push_back({glm::vec3(value, 2.0f * value, 0.7f * value), 0.0f});

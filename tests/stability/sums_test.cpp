@@ -47,7 +47,7 @@ protected:
         rig.integrator.buffer(BIND_HIT_WEIGHT).upload(std::vector<gpu::HitWeight>(n, {glm::vec3(1.0f), 0}));
         rig.integrator.buffer(BIND_HIT_EMISSION).upload(std::vector<gpu::HitEmission>(n, {glm::vec3(emission), 0.0f}));
         rig.integrator.buffer(BIND_GATHERED)
-            .upload(std::vector<gpu::Gathered>(n, {glm::vec3(0.0f), found, glm::vec3(0.0f)}));
+            .upload(std::vector<gpu::Gathered>(n, {glm::vec3(0.0f), found, glm::vec3(0.0f), 0}));
     }
 
     static void set_state(Rig& rig, const gpu::PixelState& state) {

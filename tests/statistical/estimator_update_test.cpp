@@ -69,7 +69,7 @@ public:
         Integrator& integrator = field_.integrator();
         field_.set_states(before.pixels);
         std::vector<gpu::Gathered> gathered;
-        for (const std::uint32_t count : before.found) gathered.push_back({glm::vec3(0.0f), count, glm::vec3(0.0f)});
+        for (const std::uint32_t count : before.found) gathered.push_back({glm::vec3(0.0f), count, glm::vec3(0.0f), 0});
         integrator.buffer(BIND_GATHERED).upload(gathered);
         if (!before.tally.empty()) integrator.buffer(BIND_TALLY).upload(before.tally);
         if (!before.moments.empty()) integrator.buffer(BIND_MOMENTS).upload(before.moments);

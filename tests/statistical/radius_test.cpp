@@ -48,7 +48,8 @@ TEST(Radius, HachisukaAndJensenAtConstantDensityAndAtConstantCount) {
                                                  {100u, 0.1589}, {1000u, 0.07384}}) {
         for (; done < iterations; ++done) {
             const auto found = std::uint32_t(std::lround(1e6 * ratio_of(0)));
-            const std::vector<gpu::Gathered> gathered = {{glm::vec3(0.0f), found}, {glm::vec3(0.0f), 10}};
+            const std::vector<gpu::Gathered> gathered = {{glm::vec3(0.0f), found, glm::vec3(0.0f), 0},
+                                                         {glm::vec3(0.0f), 10, glm::vec3(0.0f), 0}};
             field.integrator().buffer(BIND_GATHERED).upload(gathered);
             field.integrator().run_kernel("update", 2,
                                           {.iteration = 0, .round = 0, .last_round = 1, .offset = 0, .count = 0});
