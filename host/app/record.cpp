@@ -118,6 +118,7 @@ Json report_json(const Report& report) {
     for (const PassReport& pass : report.passes) {
         json["passes"].push_back(
             {{"name", pass.name}, {"calls", pass.calls}, {"device_seconds", pass.device_seconds}});
+        if (!pass.form.empty()) json["passes"].back()["form"] = pass.form;
     }
     return json;
 }
@@ -148,8 +149,9 @@ std::string stats_table(const Report& report) {
     std::string text = fmt::format("{:<20}{:>10}{:>14}{:>8}\n", "pass", "calls", "device s", "%");
     const auto out = std::back_inserter(text);
     for (const PassReport& pass : report.passes) {
-        fmt::format_to(out, "{:<20}{:>10}{:>14.4f}{:>8.1f}\n", pass.name, pass.calls, pass.device_seconds,
-                       total > 0.0 ? 100.0 * pass.device_seconds / total : 0.0);
+        fmt::format_to(out, "{:<20}{:>10}{:>14.4f}{:>8.1f}{}{}\n", pass.name, pass.calls, pass.device_seconds,
+                       total > 0.0 ? 100.0 * pass.device_seconds / total : 0.0, pass.form.empty() ? "" : "  ",
+                       pass.form);
     }
     fmt::format_to(out, "{:<20}{:>10}{:>14.4f}\n", "all", "", total);
     fmt::format_to(out, "{:<20}{:>10}{:>14}{:>8}\n", "memory of a", "count", "bytes each", "MiB");

@@ -49,12 +49,12 @@ void set_test(gpu::Params& params, const EstimatorRow& estimator, const Settings
 }  // namespace
 
 Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings,
-                       std::uint32_t group)
+                       std::vector<KernelForm> forms)
     : device_(device),
       bindings_(device),
       commands_(device, bindings_, timed_launches),
       buffers_(device, bindings_, scene),
-      group_(group) {
+      forms_(forms.empty() ? forms_for(device.info()) : std::move(forms)) {
     const EstimatorRow& estimator = find_estimator(settings.estimator);
     const std::uint32_t features = bits_of(scene.features) | bits_of(features_of(settings));
     scale_ = scene.frame.scale;
@@ -86,7 +86,7 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     params_.most_levels = std::uint32_t(std::clamp<std::uint64_t>(
         sorted_bytes / (sizeof(gpu::Photon) * usual_photons * settings.photons), 1, GRID_LEVELS));
     params_.sort_lanes = std::bit_ceil(std::clamp(settings.photons / 128, 64u, 4096u));
-    params_.scan_blocks = std::clamp(params_.cells / 256, group_, 4096u);
+    params_.scan_blocks = std::clamp(params_.cells / 256, forms_.front().group, 4096u);
     const auto key_bits = std::uint32_t(std::countr_zero(params_.cells));
     digits_ = (key_bits + 7) / 8;
     digit_bits_ = (key_bits + digits_ - 1) / digits_;
@@ -132,11 +132,11 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
                                          {SPEC_SECTORS, settings.sectors},
                                          {SPEC_DIGIT_BITS, digit_bits_},
                                          {SPEC_LEVELS, params_.grid_levels}});
-    specialization_[SPEC_WORKGROUP] = group_;
     std::vector<std::string> names;
     for (const KernelModule& module : kernel_modules()) {
         if (module.name == "path") continue;  // the path tracer's
         names.emplace_back(module.name);
+        choices_.emplace(names.back(), forms_of(names.back(), forms_));
         passes_.push_back({names.back(), 0, 0.0});
     }
     compile(names);
@@ -191,11 +191,20 @@ void Integrator::allocate_sorted() {
 /// as it is, so that no time of compiling is on the clock.
 void Integrator::compile(const std::vector<std::string>& names) {
     for (const std::string& name : names) {
-        kernels_.insert_or_assign(name, Kernel(device_, bindings_, name, kernel_module(name).spirv, specialization_));
+        std::vector<Kernel> kernels;
+        for (const KernelForm& form : choices_.at(name).forms()) {
+            Specialization specialization = specialization_;
+            specialization[SPEC_WORKGROUP] = form.group;
+            specialization[SPEC_WAITS] = form.waits;
+            kernels.emplace_back(device_, bindings_, name, kernel_module(name).spirv, specialization);
+        }
+        kernels_.insert_or_assign(name, std::move(kernels));
     }
     commands_.begin();
     const gpu::Launch not_due{.iteration = ~0u, .round = 0, .last_round = 0, .offset = 0, .count = 0};
-    for (const std::string& name : names) launch(name, 1, not_due);
+    for (const std::string& name : names) {
+        for (const Kernel& kernel : kernels_.at(name)) commands_.launch(kernel, 1, not_due);
+    }
     commands_.finish();
 }
 
@@ -250,12 +259,12 @@ void Integrator::build_grid(std::uint32_t i) {
 void Integrator::scan(std::uint32_t i, std::uint32_t offset, std::uint32_t count) {
     const gpu::Launch push{.iteration = i, .round = 0, .last_round = 1, .offset = offset, .count = count};
     launch("scan_sums", params_.scan_blocks, push);
-    launch("scan_blocks", group_, push);
+    launch("scan_blocks", 1, push);
     launch("scan_apply", params_.scan_blocks, push);
 }
 
 void Integrator::launch(const std::string& kernel, std::uint64_t invocations, const gpu::Launch& push) {
-    commands_.launch(kernels_.at(kernel), invocations, push);
+    commands_.launch(kernels_.at(kernel)[choices_.at(kernel).index(push.iteration)], invocations, push);
 }
 
 /// As many rounds as the pass has needed so far; the last one blocks what follows where work is left. invocations: none
@@ -268,7 +277,7 @@ void Integrator::launch_rounds(const std::string& kernel, std::optional<std::uin
         if (invocations) {
             launch(kernel, *invocations, push);
         } else {
-            commands_.launch_indirect(kernels_.at(kernel), buffer(BIND_STATUS),
+            commands_.launch_indirect(kernels_.at(kernel).front(), buffer(BIND_STATUS),
                                       offsetof(gpu::Status, search_groups), push);
         }
     }
@@ -284,12 +293,36 @@ void Integrator::finish() {
     }
 }
 
+double Integrator::seconds_of(const std::string& kernel) const {
+    return std::ranges::find(passes_, kernel, &PassReport::name)->device_seconds;
+}
+
+/// Iterations one by one until every kernel's form is chosen, or up to `target`.
+void Integrator::choose_kernels(std::uint32_t target) {
+    const auto undecided = [](const auto& choice) { return !choice.second.decided(); };
+    while (completed_ < target && std::ranges::any_of(choices_, undecided)) {
+        const std::uint32_t iteration = completed_;
+        std::map<std::string, double> before;
+        for (const auto& [name, choice] : choices_) before[name] = seconds_of(name);
+        if (!run_to(iteration + 1)) continue;
+        for (auto& [name, choice] : choices_) choice.book(iteration, seconds_of(name) - before[name]);
+    }
+}
+
 void Integrator::run(std::uint32_t count) {
     const std::uint32_t target = completed_ + count;
+    choose_kernels(target);
+    if (completed_ < target) run_to(target);
+}
+
+/// One submission, and more where work had to be finished: returns false then.
+bool Integrator::run_to(std::uint32_t target) {
+    bool undisturbed = true;
     commands_.begin();
     for (std::uint32_t i = completed_; i < target; ++i) iterate(i, Pass::eye, Pass::update, 0);
     finish();
     while (unblock(Pass::update)) {
+        undisturbed = false;
         // The blocked iteration has been finished; those behind it did nothing.
         if (completed_ >= target) break;
         commands_.begin();
@@ -297,6 +330,7 @@ void Integrator::run(std::uint32_t count) {
         finish();
     }
     assert(completed_ == target);
+    return undisturbed;
 }
 
 std::vector<Integrator::PassHash> Integrator::run_hashed() {
@@ -440,6 +474,10 @@ double Integrator::seconds() const {
 
 void Integrator::fill(Report& report) const {
     report.passes = passes_;
+    for (PassReport& pass : report.passes) {
+        const KernelChoice& choice = choices_.at(pass.name);
+        if (choice.forms().size() > 1) pass.form = choice.decided() ? text_of(*choice.chosen()) : "being measured";
+    }
     std::erase_if(report.passes, [](const PassReport& pass) { return pass.calls == 0; });
     report.iterations = completed_;
     report.emitted_paths = std::uint64_t(completed_) * params_.photons;

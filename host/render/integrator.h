@@ -12,6 +12,7 @@
 
 #include "core/image.h"
 #include "render/flatten.h"
+#include "render/kernel_choice.h"
 #include "render/report.h"
 #include "render/scene_buffers.h"
 #include "render/settings.h"
@@ -23,11 +24,11 @@ namespace vkcppm {
 
 class Integrator {
 public:
-    /// Uploads the scene, allocates the buffers, compiles the pipelines. `settings` must be resolved. group: invocations
-    /// of a work group, a power of two; every size gives the same bits.
+    /// Uploads the scene, allocates the buffers, compiles the pipelines. `settings` must be resolved. forms: in which
+    /// kernels are compiled, those of the device where there are none; every form gives the same bits.
     /// Throws Error(out_of_device_memory) where the scene or the picture does not fit the device.
     Integrator(Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings,
-               std::uint32_t group = workgroup);
+               std::vector<KernelForm> forms = {});
 
     /// Runs `count` iterations in one submission, or more where work had to be finished in further rounds.
     /// Throws Error(device_lost), Error(internal) where a ray cannot be traced within the device's limits.
@@ -98,6 +99,9 @@ private:
     void build_grid(std::uint32_t iteration);
     void scan(std::uint32_t iteration, std::uint32_t offset, std::uint32_t count);
     void finish();
+    bool run_to(std::uint32_t target);
+    void choose_kernels(std::uint32_t target);
+    double seconds_of(const std::string& kernel) const;
     bool unblock(Pass to);
     std::uint64_t hash_of(Pass pass) const;
 
@@ -107,10 +111,11 @@ private:
     gpu::Params params_{};
     SceneBuffers buffers_;
     Specialization specialization_;
-    std::map<std::string, Kernel> kernels_;
+    std::map<std::string, std::vector<Kernel>> kernels_;  // a kernel's forms
+    std::map<std::string, KernelChoice> choices_;
     std::map<Pass, std::uint32_t> rounds_;
     std::vector<PassReport> passes_;
-    std::uint32_t group_;                  // invocations of a work group
+    std::vector<KernelForm> forms_;        // to choose from
     double scale_ = 1.0;                   // frame units a metre
     std::uint64_t pixels_ = 0;
     std::uint32_t digit_bits_ = 7;

@@ -12,6 +12,7 @@ struct PassReport {
     std::string name;
     std::uint64_t calls = 0;
     double device_seconds = 0.0;
+    std::string form = {};  // of the kernel, where it was chosen by measurement; else empty
 };
 
 /// Buffers of the device that hold an entry for each of something: pixels, photon slots, triangles, ...

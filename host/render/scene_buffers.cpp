@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "render/features.h"
+#include "render/kernel_choice.h"
 #include "render/lights.h"
 #include "shared/bindings.h"
 

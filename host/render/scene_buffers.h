@@ -50,9 +50,6 @@ private:
 /// The binding by which kernels read as texels what stands at a storage binding; none where they do not.
 std::optional<std::uint32_t> texels_over(std::uint32_t binding);
 
-/// Invocations of a work group.
-inline constexpr std::uint32_t workgroup = 64;
-
 /// SPEC_* of every kernel that traces rays. features: FEATURE_*.
 Specialization scene_specialization(const Bvh& bvh, std::uint32_t features);
 

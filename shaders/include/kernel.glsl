@@ -15,6 +15,7 @@ layout(constant_id = SPEC_FEATURES) const uint FEATURES = 0xffffffffu;
 layout(constant_id = SPEC_DIGIT_BITS) const uint DIGIT_BITS = 7;
 layout(constant_id = SPEC_NODE_BITS) const uint NODE_BITS = 20;
 layout(constant_id = SPEC_LEVELS) const uint LEVELS = GRID_LEVELS;
+layout(constant_id = SPEC_WAITS) const uint WAITS = 0u;
 
 layout(push_constant, scalar) uniform LaunchBlock { Launch launch; };
 layout(binding = BIND_PARAMS, scalar) uniform ParamsBlock { Params params; };

@@ -50,7 +50,7 @@ void main() {
     uint slot = lane * params.photon_capacity;
     uint rays = 0u;
     int steps = int(params.step_budget);
-    // Lanes whose ray is done do not wait for the longest of the SIMD group: see traverse().
+    // Unless WAITS, lanes whose ray is done do not wait for the longest of the SIMD group: see traverse().
     Traversal traversal = no_traversal();
     bool running = true;
     bool fresh = true;     // the lane's ray has not begun
@@ -82,7 +82,7 @@ void main() {
             traversal = begin_traversal(state.origin, state.direction);
             fresh = false;
         }
-        traverse(traversal, steps, true, running);
+        traverse(traversal, steps, WAITS == 0u, running);
         uint found = found_by(traversal);
         if (running && found == TRACE_UNFINISHED && steps <= 0) {
             if (first_ray) atomicAdd(status.stuck, 1u);

@@ -30,6 +30,7 @@ using uint = std::uint32_t;
 #define SPEC_DIGIT_BITS 6 // of one radix sort pass
 #define SPEC_NODE_BITS 7  // of the largest index of a node of this scene's BVH
 #define SPEC_LEVELS 8     // of the grid that there is room for
+#define SPEC_WAITS 9      // 1: lanes of the photon pass wait for the longest ray of their SIMD group
 
 // Features of a scene: a pipeline holds only what its scene needs, and buffers that only a feature reads are empty
 // without it.

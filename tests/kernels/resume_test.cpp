@@ -1,10 +1,12 @@
 // A picture does not depend on how its work is cut: small step budgets, small photon buffers, one iteration at a time.
 
+#include <algorithm>
 #include <cstring>
 #include <map>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "render/estimators.h"
@@ -125,17 +127,40 @@ TEST_F(Determinism, TheSameSeedGivesTheSameBitsAndAnotherSeedOthers) {
     EXPECT_GT(differences(a, c), first.pixels() * 9 / 10) << "of " << first.pixels() << " pixels under another seed";
 }
 
-TEST_F(Determinism, EveryWorkGroupSizeGivesTheSameBits) {
+TEST_F(Determinism, EveryFormOfTheKernelsGivesTheSameBits) {
     Rig whole(room(), settings_of("cppm"), plain_device());
     whole.integrator.run(iterations);
     const auto expected = whole.integrator.save();
-    for (const std::uint32_t group : {16u, 256u}) {
-        Integrator other(plain_device(), whole.flat, whole.scene.cameras.at(0), whole.settings, group);
+    const std::vector<std::vector<KernelForm>> several = {
+        {{16, false}}, {{256, false}}, {{64, true}}, {{64, false}, {64, true}, {16, false}}};
+    for (const std::vector<KernelForm>& forms : several) {
+        Integrator other(plain_device(), whole.flat, whole.scene.cameras.at(0), whole.settings, forms);
         other.run(iterations);
+        const std::string name = fmt::format("{} forms, {} first", forms.size(), text_of(forms.front()));
         EXPECT_EQ(differences(whole.integrator.resolve(), other.resolve()), 0u)
-            << "of " << whole.pixels() << " pixels, work groups of " << group;
-        EXPECT_TRUE(expected == other.save()) << "state, work groups of " << group;
+            << "of " << whole.pixels() << " pixels, " << name;
+        EXPECT_TRUE(expected == other.save()) << "state, " << name;
     }
+}
+
+TEST_F(Determinism, FormsAreMeasuredWhileTheyRenderAndThenOneIsKept) {
+    Rig whole(room(), settings_of("cppm"), plain_device());
+    const std::vector<KernelForm> forms = {{64, false}, {64, true}, {16, false}};
+    Integrator other(plain_device(), whole.flat, whole.scene.cameras.at(0), whole.settings, forms);
+    const auto form_of_photon = [&] {
+        Report report;
+        other.fill(report);
+        return std::ranges::find(report.passes, "photon", &PassReport::name)->form;
+    };
+    constexpr std::uint32_t enough = 3 * KernelChoice::rounds;
+    other.run(enough - 1);
+    EXPECT_EQ(form_of_photon(), "being measured");
+    other.run(enough);  // iterations that had to be finished in further rounds are not measured
+    std::vector<std::string> names;
+    for (const KernelForm& form : forms) names.push_back(text_of(form));
+    EXPECT_NE(std::ranges::find(names, form_of_photon()), names.end()) << form_of_photon();
+    whole.integrator.run(2 * enough - 1);
+    EXPECT_TRUE(whole.integrator.save() == other.save());
 }
 
 }  // namespace
