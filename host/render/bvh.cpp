@@ -5,6 +5,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -220,7 +221,7 @@ public:
     }
 
     const BinaryNode* nodes() const { return nodes_.get(); }
-    std::vector<std::uint32_t> take_order() { return std::move(order_); }
+    std::span<const std::uint32_t> order() const { return order_; }
 
 private:
     /// Triangles of a node.
@@ -323,46 +324,55 @@ std::uint32_t quantise_up(float value, float origin, float cell) {
     return std::uint32_t(q);
 }
 
+/// Writes the four-wide nodes: depth-first, but the nodes among a node's children side by side. The triangles of leaves
+/// come in the order of their nodes.
 class Collapser {
 public:
-    explicit Collapser(const BinaryNode* binary) : binary_(binary) {}
+    Collapser(const BinaryNode* binary, std::span<const std::uint32_t> binary_order)
+        : nodes(1), binary_(binary), binary_order_(binary_order) {
+        order.reserve(binary_order.size());
+        stack = emit(0, 0);
+    }
 
-    /// Emits the four-wide node of the binary node and all below; returns the groups of children that can wait.
-    std::uint32_t emit(std::uint32_t root) {
-        const std::uint32_t index = std::uint32_t(nodes.size());
-        nodes.emplace_back();
+    std::vector<gpu::BvhNode> nodes;
+    std::vector<std::uint32_t> order;
+    std::uint32_t stack;  // nodes of which children can wait
+
+private:
+    /// Fills in node `index` from the binary node and adds all below; returns the nodes of which children can wait.
+    std::uint32_t emit(std::uint32_t root, std::uint32_t index) {
         Children children;
         if (binary_[root].leaf) {
             children.add(root);
         } else {
             cut_halves(root, width, children);
         }
-        quantise(index, children.list());
-        std::uint32_t need = 0;
-        for (int c = 0; c < children.count; ++c) {
-            const BinaryNode& child = binary_[children.node[c]];
-            nodes[index].exponents |= 1u << (24 + c);
-            if (child.leaf) {
-                nodes[index].exponents |= 1u << (28 + c);
-                nodes[index].child[c] = BVH_LEAF | child.first << 3 | child.count;
-            } else {
-                const auto child_index = std::uint32_t(nodes.size());
-                need = std::max(need, emit(children.node[c]));
-                nodes[index].child[c] = child_index;
-            }
+        const auto list = children.list();
+        const auto leaves = std::ranges::partition(list, [&](std::uint32_t c) { return !binary_[c].leaf; });
+        const std::size_t inner = list.size() - leaves.size();
+        const auto first = inner > 0 ? std::uint32_t(nodes.size()) : index;
+        nodes.resize(nodes.size() + inner);
+        quantise(index, list);
+        nodes[index].exponents |= ((1u << list.size()) - 1) << 24;
+        nodes[index].children = first << BVH_CHILDREN_SHIFT | std::uint32_t(inner);
+        std::uint32_t* words = inner > 0 ? nodes[first].parent_leaves : nodes[index].leaves;
+        words[0] = std::uint32_t(order.size());
+        for (std::size_t c = inner; c < list.size(); ++c) {
+            const BinaryNode& leaf = binary_[list[c]];
+            words[1] |= ((std::uint32_t(order.size()) - words[0]) | leaf.count << 4) << (8 * c);
+            std::ranges::copy(binary_order_.subspan(leaf.first, leaf.count), std::back_inserter(order));
         }
-        return need + (children.count > 1 ? 1 : 0);
+        std::uint32_t need = 0;
+        for (std::uint32_t c = 0; c < inner; ++c) need = std::max(need, emit(list[c], first + c));
+        return need + (list.size() > 1 ? 1 : 0);
     }
 
-    std::vector<gpu::BvhNode> nodes;
-
-private:
     struct Children {
         std::array<std::uint32_t, width> node;
         int count = 0;
 
         void add(std::uint32_t n) { node[count++] = n; }
-        std::span<const std::uint32_t> list() const { return {node.data(), std::size_t(count)}; }
+        std::span<std::uint32_t> list() { return {node.data(), std::size_t(count)}; }
     };
 
     /// Adds what the subtree of `n` becomes in at most so many slots of its parent.
@@ -405,6 +415,7 @@ private:
     }
 
     const BinaryNode* binary_;
+    std::span<const std::uint32_t> binary_order_;
 };
 
 }  // namespace
@@ -416,12 +427,19 @@ Bvh build_bvh(std::span<const std::array<glm::vec3, 3>> triangles) {
         bvh.nodes.emplace_back();
         return bvh;
     }
-    Builder builder(triangles);
-    Collapser collapser(builder.nodes());
-    bvh.stack = std::max(1u, collapser.emit(0));
-    bvh.nodes = std::move(collapser.nodes);
-    bvh.order = builder.take_order();
-    return bvh;
+    const Builder builder(triangles);
+    Collapser collapser(builder.nodes(), builder.order());
+    return {std::move(collapser.nodes), std::move(collapser.order), std::max(1u, collapser.stack)};
+}
+
+Child child_of(const Bvh& bvh, std::uint32_t index, int c) {
+    const gpu::BvhNode& node = bvh.nodes[index];
+    if ((node.exponents >> (24 + c) & 1u) == 0) return {};
+    const std::uint32_t inner = node.children & BVH_CHILDREN_MASK, first = node.children >> BVH_CHILDREN_SHIFT;
+    if (std::uint32_t(c) < inner) return {.node = first + std::uint32_t(c)};
+    const std::uint32_t* leaves = inner == 0 ? bvh.nodes[first].leaves : bvh.nodes[first].parent_leaves;
+    const std::uint32_t place = leaves[1] >> (8 * c);
+    return {.first = leaves[0] + (place & 15u), .count = place >> 4 & 15u};
 }
 
 Box child_box(const gpu::BvhNode& node, int c) {

@@ -13,7 +13,7 @@
 namespace vkcppm {
 
 struct Bvh {
-    std::vector<gpu::BvhNode> nodes;      // root first, depth-first
+    std::vector<gpu::BvhNode> nodes;      // root first, a node before those below it
     std::vector<std::uint32_t> order;     // [triangles] leaf order: position -> index of the input
     std::uint32_t stack = 1;              // nodes, at most, of which children can wait while one is traversed
 };
@@ -23,6 +23,14 @@ struct Bvh {
 /// quantises boxes outwards. triangles [T][3]: corners in the scene frame, finite, coordinates within [-1, 1].
 /// O(T log T). T may be 0: one node without children.
 Bvh build_bvh(std::span<const std::array<glm::vec3, 3>> triangles);
+
+/// A child of a node, as the kernels find it: a node where `node` is not 0, a leaf where `count` is not 0, or none.
+struct Child {
+    std::uint32_t node = 0;
+    std::uint32_t first = 0;  // triangle
+    std::uint32_t count = 0;
+};
+Child child_of(const Bvh& bvh, std::uint32_t index, int c);
 
 /// Box of child `c` of a node, as the kernels decode it.
 struct Box {

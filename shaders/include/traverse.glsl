@@ -37,34 +37,45 @@ void intersect_triangle(uint index, vec3 origin, vec3 direction, inout Hit hit) 
 
 vec4 bytes(uint word) { return vec4(uvec4(word, word >> 8u, word >> 16u, word >> 24u) & 255u); }
 
+// Distances to a plane of each child, as integers: floats that are not negative compare as such, and negative ones stay
+// negative. The least of two floats takes software Vulkan three instructions, because of NaN, that of integers one.
+ivec4 plane(uint word, float scale, float offset) { return floatBitsToInt(bytes(word) * scale + offset); }
+
 const uint NO_NODE = 0xffffffffu;
 
 // The children of one node that wait, one word: from the low bits up the slots of the nearest, the second and the third,
-// how many they are, the node, and in what is left the distance at which the ray enters the nearest, rounded down. A word
-// a node, not a word a child: software Vulkan stores each lane of a stack by itself.
-#define GROUP_COUNT_SHIFT 6u
-#define GROUP_NODE_SHIFT 8u
-#define GROUP_NEAR_SHIFT (GROUP_NODE_SHIFT + NODE_BITS)
-#define NO_GROUP 0u
+// the last of them again where there are fewer; where the node's children are (BvhNode::children); and in what is left
+// the distance at which the ray enters the nearest, rounded down. A word a node, not a word a child: software Vulkan
+// stores each lane of a stack by itself.
+#define GROUP_CHILDREN_SHIFT 6u
+#define GROUP_NEAR_SHIFT (GROUP_CHILDREN_SHIFT + BVH_CHILDREN_SHIFT + NODE_BITS)
 #define LARGEST_NEAR float((1u << (32u - GROUP_NEAR_SHIFT)) - 1u)
+const uint NO_GROUP = 0xffffffffu;  // no node has so many children
 
 // The scene's radius is at most 1, so that no ray within it is longer than 2.
 uint group_near(float t) { return uint(int(min(t, 2.0) * (0.5 * LARGEST_NEAR))); }
 
-uint group_node(uint group) { return group >> GROUP_NODE_SHIFT & ((1u << NODE_BITS) - 1u); }
+uint group_children(uint group) { return group >> GROUP_CHILDREN_SHIFT & (1u << BVH_CHILDREN_SHIFT + NODE_BITS) - 1u; }
 
 // Without its nearest child.
 uint group_rest(uint group) {
-    return (group & (3u << GROUP_COUNT_SHIFT)) == 1u << GROUP_COUNT_SHIFT
-               ? NO_GROUP
-               : (group & ~63u) - (1u << GROUP_COUNT_SHIFT) | (group & 63u) >> 2u;
+    return ((group >> 2u ^ group) & 3u) == 0u ? NO_GROUP : group & ~15u | group >> 2u & 15u;
 }
 
-// The child word of a slot of a node.
-uint child_of(uint node, uint slot) {
-    uvec4 child = texelFetch(nodes, int(node) * 4 + 3);
-    uvec2 pair = (slot & 2u) != 0u ? child.zw : child.xy;
-    return (slot & 1u) != 0u ? pair.y : pair.x;
+// What comes next after the child in a slot was chosen: a node, or with BVH_LEAF where to find a leaf. Takes no load.
+uint child_of(uint children, uint slot) {
+    return slot < (children & BVH_CHILDREN_MASK) ? (children >> BVH_CHILDREN_SHIFT) + slot
+                                                 : BVH_LEAF | children << 2u | slot;
+}
+
+// First triangle of a leaf and the one past its last.
+uvec2 leaf_triangles(uint leaf) {
+    uint children = (leaf & ~BVH_LEAF) >> 2u;
+    uvec4 words = texelFetch(nodes, int(children >> BVH_CHILDREN_SHIFT) * 4 + 3);
+    uvec2 leaves = (children & BVH_CHILDREN_MASK) == 0u ? words.xy : words.zw;
+    uint place = leaves.y >> 8u * (leaf & 3u);
+    uint first = leaves.x + (place & 15u);
+    return uvec2(first, first + (place >> 4u & 15u));
 }
 
 // A traversal that can be left and gone on with, so that lanes whose ray is done can take another one.
@@ -72,22 +83,26 @@ struct Traversal {
     vec3 origin;
     vec3 direction;
     vec3 inverse;  // 1 / direction
-    uint node;     // child word of what comes next; NO_NODE: the ray is done
-    uint leaf;     // a leaf put off until the lanes of the SIMD group have one, node * 4 + slot, or NO_NODE
+    uint node;     // child_of what comes next; NO_NODE: the ray is done
+    uint leaf;     // a leaf put off until the lanes of the SIMD group have one, or NO_NODE
     uint group;    // children of the latest node that wait
-    uint top;      // of the stack, which holds the groups before it, none of them empty
+    uint below;    // stack[top], kept here because a load from the stack takes long
+    uint top;      // groups on the stack, those before `group`, none of them empty
     uint limit;    // group_near of the hit
     Hit hit;       // nearest so far
 };
 
-// The latest group is not on it, so that there is room for a store of nothing when it is full.
-uint stack[STACK];
+// The groups before the latest, from stack[1] on. stack[0] is NO_GROUP, and there is room for a store of nothing when the
+// stack is full.
+uint stack[STACK + 1u];
 
 Traversal begin_traversal(vec3 origin, vec3 direction) {
     // Tiny components keep their sign and stay finite: 0 * infinity is no number.
     vec3 d = mix(direction, mix(vec3(1e-20), vec3(-1e-20), lessThan(direction, vec3(0.0))),
                  lessThan(abs(direction), vec3(1e-20)));
-    return Traversal(origin, direction, 1.0 / d, 0u, NO_NODE, NO_GROUP, 0u, 0xffffffffu, Hit(3.0e38, 0u, vec2(0.0)));
+    stack[0] = NO_GROUP;
+    Hit nothing = Hit(3.0e38, 0u, vec2(0.0));
+    return Traversal(origin, direction, 1.0 / d, 0u, NO_NODE, NO_GROUP, NO_GROUP, 0u, 0xffffffffu, nothing);
 }
 
 Traversal no_traversal() {
@@ -96,19 +111,22 @@ Traversal no_traversal() {
     return t;
 }
 
-// Where `wants`: takes the nearest waiting child that is not behind the hit into parent and slot, and wants no more.
+// Where `wants`: takes the nearest waiting child that is not behind the hit into children and slot, and wants no more.
+// Software Vulkan runs a loop once whatever its condition: this one is left at its end and most often runs just once.
 #define TAKE_WAITING()                                                                        \
-    for (; wants && (t.group != NO_GROUP || t.top > 0u); --steps) {                           \
-        t.top -= uint(t.group == NO_GROUP);                                                   \
-        t.group = t.group == NO_GROUP ? stack[t.top] : t.group;                               \
-        if (t.group >> GROUP_NEAR_SHIFT <= t.limit) {                                         \
-            parent = group_node(t.group);                                                     \
-            slot = t.group & 3u;                                                              \
-            t.group = group_rest(t.group);                                                    \
-            wants = false;                                                                    \
-        } else {                                                                              \
-            t.group = NO_GROUP;                                                               \
-        }                                                                                     \
+    while (true) {                                                                            \
+        bool pops = wants && t.group == NO_GROUP && t.top > 0u;                               \
+        t.group = pops ? t.below : t.group;                                                   \
+        t.top -= uint(pops);                                                                  \
+        t.below = stack[t.top];                                                               \
+        bool looks = wants && t.group != NO_GROUP;                                            \
+        bool takes = looks && t.group >> GROUP_NEAR_SHIFT <= t.limit;                         \
+        children = takes ? group_children(t.group) : children;                                \
+        slot = takes ? t.group & 3u : slot;                                                   \
+        t.group = takes ? group_rest(t.group) : looks ? NO_GROUP : t.group;                   \
+        steps -= int(looks);                                                                  \
+        wants = wants && !takes;                                                              \
+        if (!wants || t.top == 0u) break;                                                     \
     }
 
 // How many lanes of the SIMD group say so. Software Vulkan makes a ballot in a third of the time of a sum or a vote.
@@ -146,58 +164,60 @@ void traverse(inout Traversal t, inout int steps, bool independent, bool running
             vec3 cell = uintBitsToFloat(uvec3(a.w << 23u, a.w << 15u, a.w << 7u) & 0x7f800000u);
             vec3 scale = cell * t.inverse;
             vec3 offset = (uintBitsToFloat(a.xyz) - t.origin) * t.inverse;
-            vec4 near = max(max(bytes(negative.x ? b.w : b.x) * scale.x + offset.x,
-                                bytes(negative.y ? c.x : b.y) * scale.y + offset.y),
-                            max(bytes(negative.z ? c.y : b.z) * scale.z + offset.z, vec4(0.0)));
-            vec4 far = min(min(bytes(negative.x ? b.x : b.w) * scale.x + offset.x,
-                               bytes(negative.y ? b.y : c.x) * scale.y + offset.y),
-                           min(bytes(negative.z ? b.z : c.y) * scale.z + offset.z, vec4(t.hit.t)));
+            ivec4 near = max(max(plane(negative.x ? b.w : b.x, scale.x, offset.x),
+                                 plane(negative.y ? c.x : b.y, scale.y, offset.y)),
+                             max(plane(negative.z ? c.y : b.z, scale.z, offset.z), ivec4(0)));
+            ivec4 far = min(min(plane(negative.x ? b.x : b.w, scale.x, offset.x),
+                                plane(negative.y ? b.y : c.x, scale.y, offset.y)),
+                            min(plane(negative.z ? b.z : c.y, scale.z, offset.z), ivec4(floatBitsToInt(t.hit.t))));
             uint present = inner ? a.w : 0u;
             // Distances are not negative and compare as words do; the slot takes the place of their last bits.
-            uvec4 r = floatBitsToUint(near) & 0x7ffffffcu | uvec4(0u, 1u, 2u, 3u);
+            uvec4 r = uvec4(near) & 0x7ffffffcu | uvec4(0u, 1u, 2u, 3u);
             r = mix(uvec4(NO_NODE), r, bvec4(uvec4(lessThanEqual(near, far)) &
                                              (uvec4(present) >> uvec4(24u, 25u, 26u, 27u) & 1u)));
             // Nearest first (sorting network).
             r = uvec4(min(r.xz, r.yw), max(r.xz, r.yw)).xzyw;
             r = uvec4(min(r.xy, r.zw), max(r.xy, r.zw));
             r.yz = uvec2(min(r.y, r.z), max(r.y, r.z));
-            uint waiting = uint(r.y != NO_NODE) + uint(r.z != NO_NODE) + uint(r.w != NO_NODE);
-            stack[t.top] = t.group;
-            t.top += uint(waiting > 0u && t.group != NO_GROUP);
-            uint fresh = r.y & 3u | (r.z & 3u) << 2u | (r.w & 3u) << 4u | waiting << GROUP_COUNT_SHIFT |
-                         t.node << GROUP_NODE_SHIFT | group_near(uintBitsToFloat(r.y & ~3u)) << GROUP_NEAR_SHIFT;
-            t.group = waiting > 0u ? fresh : t.group;
-            uint parent = t.node, slot = r.x & 3u;
+            stack[t.top + 1u] = t.group;
+            bool waits = r.y != NO_NODE;
+            bool pushes = waits && t.group != NO_GROUP;
+            t.top += uint(pushes);
+            t.below = pushes ? t.group : t.below;
+            uint second = r.z != NO_NODE ? r.z : r.y;
+            uint third = r.w != NO_NODE ? r.w : second;
+            uint fresh = r.y & 3u | (second & 3u) << 2u | (third & 3u) << 4u | c.z << GROUP_CHILDREN_SHIFT |
+                         group_near(uintBitsToFloat(r.y & ~3u)) << GROUP_NEAR_SHIFT;
+            t.group = waits ? fresh : t.group;
+            uint children = c.z, slot = r.x & 3u;
             bool any = r.x != NO_NODE;
-            bool put_off = any && (a.w >> slot & 1u << 28u) != 0u && t.leaf == NO_NODE;
-            t.leaf = put_off ? t.node << 2u | slot : t.leaf;
+            uint nearest = child_of(children, slot);
+            bool put_off = any && nearest >= BVH_LEAF && t.leaf == NO_NODE;
+            t.leaf = put_off ? nearest : t.leaf;
             bool wants = inner && (put_off || !any);
             TAKE_WAITING()
-            uint child = child_of(inner ? parent : 0u, slot);
-            t.node = inner ? wants ? NO_NODE : child : t.node;
+            t.node = inner ? wants ? NO_NODE : child_of(children, slot) : t.node;
         }
         // Here the node is a leaf or none, unless the steps are spent; so is what was put off.
         bool wants = goes_on && t.node >= BVH_LEAF;
-        uint word = wants && t.leaf != NO_NODE ? child_of(t.leaf >> 2u, t.leaf & 3u) : NO_NODE;
+        uint leaf = wants ? t.leaf : NO_NODE;
         for (uint i = 0u; i < 2u; ++i) {
-            if (word != NO_NODE) {
-                uint first = (word & ~BVH_LEAF) >> 3u;
-                uint last = first + (word & 7u);
-                for (; first < last; ++first) {
+            if (leaf != NO_NODE) {
+                uvec2 range = leaf_triangles(leaf);
+                for (uint triangle = range.x; triangle < range.y; ++triangle) {
                     --steps;
-                    intersect_triangle(first, t.origin, t.direction, t.hit);
+                    intersect_triangle(triangle, t.origin, t.direction, t.hit);
                 }
             }
-            word = wants ? t.node : NO_NODE;
+            leaf = wants ? t.node : NO_NODE;
         }
         t.leaf = wants ? NO_NODE : t.leaf;
         t.limit = group_near(t.hit.t);
         bool asked = wants;
         steps -= int(wants);
-        uint parent = 0u, slot = 0u;
+        uint children = 0u, slot = 0u;
         TAKE_WAITING()
-        uint child = child_of(parent, slot);
-        t.node = asked ? wants ? NO_NODE : child : t.node;
+        t.node = asked ? wants ? NO_NODE : child_of(children, slot) : t.node;
     }
 }
 

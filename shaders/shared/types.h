@@ -106,10 +106,12 @@ using uint = std::uint32_t;
 #define LIGHT_DIRECTIONAL 3u
 #define LIGHT_ENVIRONMENT 4u
 
-// Child word of a BVH node: 0 none; top bit set: leaf = first triangle << 3 | count; else index of a node.
-#define BVH_LEAF 0x80000000u
+#define BVH_LEAF 0x80000000u  // set where a word may name a node or a leaf
 #define BVH_MAX_LEAF 4
-#define BVH_MAX_NODE_BITS 23  // of an index of a node, so that a word of the traversal stack holds it
+#define BVH_MAX_NODE_BITS 22  // of an index of a node, so that a word of the traversal stack holds it
+// BvhNode::children: index << BVH_CHILDREN_SHIFT | how many of the children are nodes.
+#define BVH_CHILDREN_SHIFT 3
+#define BVH_CHILDREN_MASK 7u
 
 // Top bit of TriangleShading::material: the three normals are the geometric normal.
 #define SHADING_FLAT 0x80000000u
@@ -117,16 +119,19 @@ using uint = std::uint32_t;
 // 4-wide node, 64 bytes, read as 4 uvec4 texels. Box of child c on axis a: origin[a] + 2^(exponent[a]-127) * q[a] byte c.
 struct BvhNode {
     vec3 origin;
-    uint exponents;    // biased exponents of the cell size, x | y << 8 | z << 16; bit 24 + c: there is a child c;
-                       // bit 28 + c: it is a leaf
+    uint exponents;    // biased exponents of the cell size, x | y << 8 | z << 16; bit 24 + c: there is a child c
     uint low_x;        // byte c: child c
     uint low_y;
     uint low_z;
     uint high_x;
     uint high_y;
     uint high_z;
-    uint unused[2];
-    uint child[4];
+    uint children;     // those that are nodes come first, and stand side by side: the index of the first of them, or
+                       // of this node itself where all are leaves
+    uint unused;
+    uint leaves[2];         // where all children are leaves: their first triangle; byte c: what comes before child c
+                            // | its triangles << 4
+    uint parent_leaves[2];  // where this is the first node of its siblings: the same of the parent's leaves
 };
 
 // Moeller-Trumbore form, 48 bytes, read as 3 vec4 texels.

@@ -27,17 +27,19 @@ Cost cost_of(const Bvh& bvh) {
     Cost cost;
     Box root;
     for (int c = 0; c < 4; ++c) {
-        if (bvh.nodes[0].child[c] == 0) continue;
+        const Child child = child_of(bvh, 0, c);
+        if (child.node == 0 && child.count == 0) continue;
         const Box box = child_box(bvh.nodes[0], c);
         root.low = c == 0 ? box.low : glm::min(root.low, box.low);
         root.high = c == 0 ? box.high : glm::max(root.high, box.high);
     }
-    for (const gpu::BvhNode& node : bvh.nodes) {
+    for (std::uint32_t index = 0; index < bvh.nodes.size(); ++index) {
         for (int c = 0; c < 4; ++c) {
-            const std::uint32_t child = node.child[c];
-            if (child == 0) continue;
-            const double probability = area(child_box(node, c)) / area(root);
-            (child & BVH_LEAF ? cost.triangles : cost.nodes) += probability * (child & BVH_LEAF ? child & 7u : 1u);
+            const Child child = child_of(bvh, index, c);
+            if (child.node == 0 && child.count == 0) continue;
+            const double probability = area(child_box(bvh.nodes[index], c)) / area(root);
+            cost.nodes += child.node != 0 ? probability : 0.0;
+            cost.triangles += probability * child.count;
         }
     }
     return cost;

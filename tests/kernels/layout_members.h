@@ -4,7 +4,7 @@
 #pragma once
 #endif
 #define MEMBERS_BVH_NODE X(origin) X(exponents) X(low_x) X(low_y) X(low_z) X(high_x) X(high_y) X(high_z) \
-    X(unused) X(child)
+    X(children) X(unused) X(leaves) X(parent_leaves)
 #define MEMBERS_TRIANGLE_GEOMETRY X(v0) X(error) X(e1) X(slack_u) X(e2) X(slack_v)
 #define MEMBERS_TRIANGLE_SHADING X(normal) X(material)
 #define MEMBERS_SURFACE_MATERIAL \

@@ -46,22 +46,22 @@ std::uint32_t walk_node(const Bvh& bvh, const Corners& triangles, std::uint32_t 
     const gpu::BvhNode& node = bvh.nodes[index];
     std::uint32_t children = 0, deepest = 0;
     for (int c = 0; c < 4; ++c) {
-        const std::uint32_t child = node.child[c];
-        if (child == 0) continue;
+        const Child child = child_of(bvh, index, c);
+        if (child.node == 0 && child.count == 0) continue;
         ++children;
         std::vector<std::uint32_t> inside;
-        if (child & BVH_LEAF) {
+        if (child.node == 0) {
             ++walk.leaves;
-            const std::uint32_t first = (child & ~BVH_LEAF) >> 3, count = child & 7;
-            EXPECT_TRUE(count >= 1 && count <= BVH_MAX_LEAF) << count << " triangles in a leaf";
-            EXPECT_LE(first + count, bvh.order.size());
-            for (std::uint32_t i = first; i < std::min<std::uint32_t>(first + count, bvh.order.size()); ++i) {
+            const std::uint32_t end = child.first + child.count;
+            EXPECT_LE(child.count, std::uint32_t(BVH_MAX_LEAF)) << "triangles in a leaf";
+            EXPECT_LE(end, bvh.order.size());
+            for (std::uint32_t i = child.first; i < std::min<std::uint32_t>(end, bvh.order.size()); ++i) {
                 inside.push_back(bvh.order[i]);
                 ++walk.times[bvh.order[i]];
             }
         } else {
-            EXPECT_GT(child, index) << "depth-first order";
-            deepest = std::max(deepest, walk_node(bvh, triangles, child, depth + 1, walk, inside));
+            EXPECT_GT(child.node, index) << "a node before those below it";
+            deepest = std::max(deepest, walk_node(bvh, triangles, child.node, depth + 1, walk, inside));
         }
         const Box box = child_box(node, c);
         for (const std::uint32_t triangle : inside) {
