@@ -348,7 +348,7 @@ private:
             cut_halves(root, width, children);
         }
         const auto list = children.list();
-        const auto leaves = std::ranges::partition(list, [&](std::uint32_t c) { return !binary_[c].leaf; });
+        const auto leaves = std::ranges::stable_partition(list, [&](std::uint32_t c) { return !binary_[c].leaf; });
         const std::size_t inner = list.size() - leaves.size();
         const auto first = inner > 0 ? std::uint32_t(nodes.size()) : index;
         nodes.resize(nodes.size() + inner);

@@ -138,7 +138,7 @@ bool should_leave(uint busy, uint all, float share) { return float(busy) <= shar
 
 // Shares of should_leave, measured on software Vulkan: of lanes within the tree, for those with a leaf; of lanes with a
 // ray, for those that could take another one.
-#define INNER_SHARE 0.5
+#define INNER_SHARE 0.25
 #define RAY_SHARE 1.0
 
 // Goes on with the lanes' rays until they are done or out of `steps`, or, where they are `independent`, until too few

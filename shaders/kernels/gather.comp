@@ -83,11 +83,17 @@ void main() {
         uint queued = 0u;
         FOR_SEGMENTS(box, cursor, walk, steps, queued < QUEUE, {
             uvec2 run = uvec2(walk.first, 0u);
-            for (uint bit = 1u; walk.first < walk.last && steps > 0 && bit != 0u; ++walk.first, --steps, bit <<= 1u) {
-                uvec4 photon = texelFetch(sorted, int(walk.first));
+            // Left at its end, for software Vulkan runs the body of a loop once more where it is left at its start. There,
+            // lanes that have left go through the rest of the trips with what they had: the body makes the same of it.
+            uint bit = walk.first < walk.last ? 1u : 0u;
+            do {
+                uvec4 photon = texelFetch(sorted, int(bit != 0u ? walk.first : 0u));
                 float squared;
                 run.y |= accepts(box.level, walk, photon, position, reach2, normal, both_sides, squared) ? bit : 0u;
-            }
+                walk.first += uint(bit != 0u);
+                steps -= int(bit != 0u);
+                bit <<= 1u;
+            } while (bit != 0u && walk.first < walk.last && steps > 0);
             // A store by all lanes: a branch for each would guess wrong.
             queue[queued] = run;
             queued += uint(run.y != 0u);
