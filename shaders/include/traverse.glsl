@@ -43,10 +43,10 @@ ivec4 plane(uint word, float scale, float offset) { return floatBitsToInt(bytes(
 
 const uint NO_NODE = 0xffffffffu;
 
-// The children of one node that wait, one word: from the low bits up the slots of the nearest, the second and the third,
-// the last of them again where there are fewer; where the node's children are (BvhNode::children); and in what is left
-// the distance at which the ray enters the nearest, rounded down. A word a node, not a word a child: software Vulkan
-// stores each lane of a stack by itself.
+// The children of one node that wait, one word: from the low bits up the slots of the nearest, the second and the
+// third, the last of them again where there are fewer; where the node's children are (BvhNode::children); and in what
+// is left the distance at which the ray enters the nearest, rounded down. A word a node, not a word a child: software
+// Vulkan stores each lane of a stack by itself.
 #define GROUP_CHILDREN_SHIFT 6u
 #define GROUP_NEAR_SHIFT (GROUP_CHILDREN_SHIFT + BVH_CHILDREN_SHIFT + NODE_BITS)
 #define LARGEST_NEAR float((1u << (32u - GROUP_NEAR_SHIFT)) - 1u)
@@ -92,8 +92,8 @@ struct Traversal {
     Hit hit;       // nearest so far
 };
 
-// The groups before the latest, from stack[1] on. stack[0] is NO_GROUP, and there is room for a store of nothing when the
-// stack is full.
+// The groups before the latest, from stack[1] on. stack[0] is NO_GROUP, and there is room for a store of nothing when
+// the stack is full.
 uint stack[STACK + 1u];
 
 Traversal begin_traversal(vec3 origin, vec3 direction) {
@@ -132,8 +132,8 @@ Traversal no_traversal() {
 // How many lanes of the SIMD group say so. Software Vulkan makes a ballot in a third of the time of a sum or a vote.
 uint lanes(bool condition) { return subgroupBallotBitCount(subgroupBallot(condition)); }
 
-// Whether the SIMD group should leave what `busy` lanes of it do, for what the rest of `all` wait for: when none is busy,
-// or at most `share` times as many as wait.
+// Whether the SIMD group should leave what `busy` lanes of it do, for what the rest of `all` wait for: when none is
+// busy, or at most `share` times as many as wait.
 bool should_leave(uint busy, uint all, float share) { return float(busy) <= share * float(all - busy); }
 
 // Shares of should_leave, measured on software Vulkan: of lanes within the tree, for those with a leaf; of lanes with a
@@ -142,19 +142,18 @@ bool should_leave(uint busy, uint all, float share) { return float(busy) <= shar
 #define RAY_SHARE 1.0
 
 // Goes on with the lanes' rays until they are done or out of `steps`, or, where they are `independent`, until too few
-// lanes are left for those that wait: `running` lanes, with a ray or without one. Spends `steps`, one a loop trip; it may overdraw
-// them by the height of the stack.
-// The loops go on while any lane of the SIMD group needs them, with every lane in them: what a lane does not need it does
-// without effect. So a push is a store by all lanes, without a branch for each that guesses wrong.
+// lanes are left for those that wait: `running` lanes, with a ray or without one. Spends `steps`, one a loop trip; it
+// may overdraw them by the height of the stack.
+// The loops go on while any lane of the SIMD group needs them, with every lane in them: what a lane does not need it
+// does without effect. So a push is a store by all lanes, without a branch for each that guesses wrong. They are left
+// at their ends: left at its start, a loop's body runs once more for no lane.
 void traverse(inout Traversal t, inout int steps, bool independent, bool running) {
     uint all = lanes(running);
-    while (true) {
+    uint going = lanes(t.node != NO_NODE && steps > 0);
+    do {
         bool goes_on = t.node != NO_NODE && steps > 0;
-        uint going = lanes(goes_on);
-        if (should_leave(going, all, independent ? RAY_SHARE : 0.0)) break;
-        while (true) {
+        do {
             bool inner = t.node < BVH_LEAF && steps > 0;
-            if (should_leave(lanes(inner), going, independent ? INNER_SHARE : 0.0)) break;
             steps -= int(inner);
             int texel = inner ? int(t.node) * 4 : 0;
             uvec4 a = texelFetch(nodes, texel);
@@ -197,17 +196,17 @@ void traverse(inout Traversal t, inout int steps, bool independent, bool running
             bool wants = inner && (put_off || !any);
             TAKE_WAITING()
             t.node = inner ? wants ? NO_NODE : child_of(children, slot) : t.node;
-        }
+        } while (!should_leave(lanes(t.node < BVH_LEAF && steps > 0), going, independent ? INNER_SHARE : 0.0));
         // Here the node is a leaf or none, unless the steps are spent; so is what was put off.
         bool wants = goes_on && t.node >= BVH_LEAF;
         uint leaf = wants ? t.leaf : NO_NODE;
         for (uint i = 0u; i < 2u; ++i) {
             if (leaf != NO_NODE) {
                 uvec2 range = leaf_triangles(leaf);
-                for (uint triangle = range.x; triangle < range.y; ++triangle) {
+                do {
                     --steps;
-                    intersect_triangle(triangle, t.origin, t.direction, t.hit);
-                }
+                    intersect_triangle(range.x, t.origin, t.direction, t.hit);
+                } while (++range.x < range.y);
             }
             leaf = wants ? t.node : NO_NODE;
         }
@@ -218,7 +217,8 @@ void traverse(inout Traversal t, inout int steps, bool independent, bool running
         uint children = 0u, slot = 0u;
         TAKE_WAITING()
         t.node = asked ? wants ? NO_NODE : child_of(children, slot) : t.node;
-    }
+        going = lanes(t.node != NO_NODE && steps > 0);
+    } while (!should_leave(going, all, independent ? RAY_SHARE : 0.0));
 }
 
 uint found_by(Traversal t) {
