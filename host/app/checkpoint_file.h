@@ -32,8 +32,8 @@ Identity identity_of(const SceneOptions& options, const Scene& scene, const Sett
 void write_checkpoint(const std::filesystem::path& file, const Identity& identity, const Checkpoint& checkpoint);
 
 /// Throws Error(no_input) where there is no such file, Error(bad_scene) where it is no checkpoint, of another format,
-/// cut off or damaged, or its state is larger than that of a picture of `pixels`, Error(usage) with what differs where it
-/// is not of `identity`. Takes no more memory than the file has bytes, and of another render none for its state.
+/// cut off or damaged, or its state is larger than that of a picture of `pixels`, Error(usage) with what differs where
+/// it is not of `identity`. Takes no more memory than the file has bytes, and of another render none for its state.
 Checkpoint read_checkpoint(const std::filesystem::path& file, const Identity& identity, std::size_t pixels);
 
 }  // namespace vkcppm

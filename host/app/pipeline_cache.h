@@ -16,7 +16,8 @@ namespace vkcppm {
 class PipelineCache {
 public:
     /// Hands the device the pipelines that an earlier run left for it and its driver. A file that is absent, damaged or
-    /// of another driver is as good as none. Keeps a reference to the device. `on` false: does nothing, here and at the end.
+    /// of another driver is as good as none. Keeps a reference to the device. `on` false: does nothing, here and at the
+    /// end.
     PipelineCache(Device& device, bool on);
 
     /// Writes what the driver would have again, where that is new. A place that takes no file is no error.

@@ -22,8 +22,8 @@ nlohmann::ordered_json scene_json(const SceneOptions& options, const Scene& scen
 /// bytes_each, bytes}].
 nlohmann::ordered_json report_json(const Report& report);
 
-/// EXR attributes "vkcppm.*": the members of `json`, then the scene's name and hash, what was done to it, device, driver
-/// and version.
+/// EXR attributes "vkcppm.*": the members of `json`, then the scene's name and hash, what was done to it, device,
+/// driver and version.
 ExrAttributes attributes_of(nlohmann::ordered_json json, const SceneOptions& options, const Scene& scene,
                             const Report& report);
 
@@ -37,8 +37,8 @@ std::string version();
 /// runs of one seed on one device.
 ExrAttributes exr_attributes(const SceneOptions& options, const Scene& scene, const Rendering& rendering);
 
-/// The text of --stats: a JSON object with version, scene, settings and the report; with a reference also its file, what
-/// the render was to stop at, and the curve.
+/// The text of --stats: a JSON object with version, scene, settings and the report; with a reference also its file,
+/// what the render was to stop at, and the curve.
 std::string stats_json(const RenderOptions& options, const Scene& scene, const Rendering& rendering);
 
 /// True where the last point of the curve is at or below the error to stop at. Asserts that the render was measured.

@@ -27,8 +27,8 @@ bool is_snapshot(std::uint64_t iterations);
 /// Least squares slope of log y against log x over points with x, y > 0; absent for fewer than two different x.
 std::optional<double> log_log_slope(std::span<const double> x, std::span<const double> y);
 
-/// The x at which the piecewise log-log interpolation of (x, y) first comes down to `level`, as the paper reads times to
-/// equal error (supplementary, Table 1). Absent where the curve never gets there; the first x where it begins below.
+/// The x at which the piecewise log-log interpolation of (x, y) first comes down to `level`, as the paper reads times
+/// to equal error (supplementary, Table 1). Absent where the curve never gets there; the first x where it begins below.
 std::optional<double> first_at_or_below(std::span<const double> x, std::span<const double> y, double level);
 
 }  // namespace vkcppm

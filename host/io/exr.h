@@ -27,8 +27,8 @@ ExrChannels to_channels(const Image& image);
 /// How a number is stored: as it is, or rounded to the nearest half float, 11 bits of at most 65,504.
 enum class ExrDepth { full, half };
 
-/// Writes scan lines with ZIP compression and the chromaticities of Rec. 709. The same arguments give the same bytes. The
-/// file is written whole or not at all (write_file). Throws Error(cannot_write).
+/// Writes scan lines with ZIP compression and the chromaticities of Rec. 709. The same arguments give the same bytes.
+/// The file is written whole or not at all (write_file). Throws Error(cannot_write).
 void write_exr(const std::filesystem::path& file, const ExrChannels& channels, const ExrAttributes& attributes = {},
                ExrDepth depth = ExrDepth::full);
 void write_exr(const std::filesystem::path& file, const Image& image, const ExrAttributes& attributes = {});
@@ -37,8 +37,8 @@ void write_exr(const std::filesystem::path& file, const Image& image, const ExrA
 inline constexpr std::uint64_t most_exr_pixels = std::uint64_t(1) << 27;
 
 /// Reads R, G and B, float or half, scan lines or tiles. The picture is the display window; what the data window does
-/// not cover is black. Throws Error: no_input where the file is missing, bad_scene where it is not such a picture or has
-/// more than `most_pixels` pixels.
+/// not cover is black. Throws Error: no_input where the file is missing, bad_scene where it is not such a picture or
+/// has more than `most_pixels` pixels.
 Image read_exr(const std::filesystem::path& file, std::uint64_t most_pixels = most_exr_pixels);
 
 /// The text attributes of a file, sorted by name. Throws like read_exr.

@@ -15,8 +15,8 @@
 namespace vkcppm {
 namespace {
 
-// Pixels a byte of the file can stand for: Deflate makes at most 1032 bytes of one, and some of OpenEXR's encodings have
-// less than a byte for a pixel before that. An even picture of 16384x8192 pixels takes 120 KB in its best.
+// Pixels a byte of the file can stand for: Deflate makes at most 1032 bytes of one, and some of OpenEXR's encodings
+// have less than a byte for a pixel before that. An even picture of 16384x8192 pixels takes 120 KB in its best.
 constexpr std::uint64_t most_pixels_per_byte = 8192;
 constexpr std::uint32_t magic = 20000630;
 constexpr std::uint64_t offset_size = 8;        // of a chunk, in the table behind the headers
@@ -43,12 +43,13 @@ std::uint64_t rows_a_chunk(std::uint8_t compression) {
     return compression < rows.size() ? rows[compression] : rows.back();
 }
 
-/// Reads the headers from front to back, as OpenEXR does ("OpenEXR File Layout": magic, version, then attributes as name, type, size and
-/// data; an empty name ends a part, an empty part the headers of a file of several).
+/// Reads the headers from front to back, as OpenEXR does ("OpenEXR File Layout": magic, version, then attributes as
+/// name, type, size and data; an empty name ends a part, an empty part the headers of a file of several).
 class HeaderReader {
 public:
     HeaderReader(const std::filesystem::path& file, std::uint64_t most_pixels)
-        : file_(file), in_(file, std::ios::binary), size_(std::filesystem::file_size(file)), most_pixels_(most_pixels) {}
+        : file_(file), in_(file, std::ios::binary), size_(std::filesystem::file_size(file)),
+          most_pixels_(most_pixels) {}
 
     void check() {
         constexpr std::uint32_t several_parts = 0x1000;
@@ -76,7 +77,9 @@ private:
     std::string take_name() {
         std::string name;
         for (char c = take<char>(); c != '\0'; c = take<char>()) {
-            if (name.size() == longest_name) fail(fmt::format("a name in its header has more than {} bytes", longest_name));
+            if (name.size() == longest_name) {
+                fail(fmt::format("a name in its header has more than {} bytes", longest_name));
+            }
             name += c >= 0x20 && c < 0x7f ? c : '?';  // it goes into messages
         }
         return name;
@@ -102,7 +105,9 @@ private:
                 part.compression = take<std::uint8_t>();
             }
             in_.seekg(begin);
-            if (!skip(type, size, part)) fail(fmt::format("attribute '{}' of its header has {} bytes, which is no {}", name, size, type));
+            if (!skip(type, size, part)) {
+                fail(fmt::format("attribute '{}' of its header has {} bytes, which is no {}", name, size, type));
+            }
             in_.seekg(begin + size);
         }
         if (part.data) check_chunks(part);
@@ -123,7 +128,8 @@ private:
             return width * height < most_pixels_ && 8 + 4 * width * height == std::uint64_t(size);
         }
         if (type == "stringvector") return skip_strings(size);
-        return type != "idmanifest";  // of deep pictures, and no end of sizes; a string and what OpenEXR does not know end
+        // That is of deep pictures, and no end of sizes; a string ends, and so does what OpenEXR does not know.
+        return type != "idmanifest";
     }
 
     bool skip_channels(std::int32_t size, Part& part) {

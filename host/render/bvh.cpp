@@ -70,8 +70,8 @@ struct Primitive {
     Float4 centre() const { return all(0.5f) * (bounds.low + bounds.high); }
 };
 
-/// A node of the binary tree, whose leaves hold one triangle each. The surface area heuristic tells how it is best cut into
-/// four-wide nodes and leaves (Ylitie, Karras and Laine 2017, section 3).
+/// A node of the binary tree, whose leaves hold one triangle each. The surface area heuristic tells how it is best cut
+/// into four-wide nodes and leaves (Ylitie, Karras and Laine 2017, section 3).
 struct BinaryNode {
     Bounds bounds;
     std::uint32_t first;  // triangles of the subtree
@@ -127,8 +127,8 @@ struct Split {
     float cost = std::numeric_limits<float>::infinity();
 };
 
-/// What lies in each slab along each axis. Slabs in which nothing lies are neither set nor looked at: most nodes have few
-/// triangles.
+/// What lies in each slab along each axis. Slabs in which nothing lies are neither set nor looked at: most nodes have
+/// few triangles.
 class Bins {
 public:
     Bins(const Slabs& slabs, std::span<const Primitive> primitives) {
@@ -205,8 +205,8 @@ private:
     std::array<Axis, 3> axes_;
 };
 
-/// Builds the binary tree, subtrees in parallel. A node's triangles lie side by side in one of two buffers and go over into
-/// the other one for its children, in the same order on either side of the plane.
+/// Builds the binary tree, subtrees in parallel. A node's triangles lie side by side in one of two buffers and go over
+/// into the other one for its children, in the same order on either side of the plane.
 class Builder {
 public:
     explicit Builder(std::span<const std::array<glm::vec3, 3>> triangles)

@@ -18,10 +18,10 @@ struct Bvh {
     std::uint32_t stack = 1;              // nodes, at most, of which children can wait while one is traversed
 };
 
-/// Builds a binary tree by binned surface area heuristic (Wald 2007), all cores, the same tree on any number of threads;
-/// then cuts it at the least cost by the same heuristic into four-wide nodes and leaves (Ylitie, Karras and Laine 2017) and
-/// quantises boxes outwards. triangles [T][3]: corners in the scene frame, finite, coordinates within [-1, 1].
-/// O(T log T). T may be 0: one node without children.
+/// Builds a binary tree by binned surface area heuristic (Wald 2007), all cores, the same tree on any number of
+/// threads; then cuts it at the least cost by the same heuristic into four-wide nodes and leaves (Ylitie, Karras and
+/// Laine 2017) and quantises boxes outwards. triangles [T][3]: corners in the scene frame, finite, coordinates within
+/// [-1, 1]. O(T log T). T may be 0: one node without children.
 Bvh build_bvh(std::span<const std::array<glm::vec3, 3>> triangles);
 
 /// A child of a node, as the kernels find it: a node where `node` is not 0, a leaf where `count` is not 0, or none.

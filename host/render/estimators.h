@@ -32,7 +32,8 @@ std::uint32_t cells(const EstimatorRow& row, std::uint32_t rings, std::uint32_t 
 std::vector<float> chi_squared_thresholds(const EstimatorRow& row, std::uint32_t rings, std::uint32_t sectors,
                                           double significance);
 
-/// [rings x F_QUANTILES] thresholds of the F-test, uniform in 1 / (m - 1) over [0, 1/2] for m samples; empty for others.
+/// [rings x F_QUANTILES] thresholds of the F-test, uniform in 1 / (m - 1) over [0, 1/2] for m samples; empty for
+/// others.
 std::vector<float> f_thresholds(const EstimatorRow& row, std::uint32_t rings, std::uint32_t sectors,
                                 double significance);
 

@@ -13,7 +13,8 @@
 
 namespace vkcppm {
 
-/// The features of a scene, in the order of their bits. traits: of its materials. `flat` must be whole but for its features.
+/// The features of a scene, in the order of their bits. traits: of its materials. `flat` must be whole but for its
+/// features.
 std::vector<Feature> features_of(const Scene& scene, const std::vector<SurfaceTraits>& traits, const FlatScene& flat);
 
 /// Those that settings ask for.

@@ -109,7 +109,8 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     buffers_.upload(BIND_QUANTILES, "quantiles", quantiles, Kind::storage);
     buffers_.allocate(BIND_AOVS, "aovs", settings.aovs ? pixels_ * sizeof(gpu::Aovs) : 0, Kind::storage);
     const bool glossy = (features & FEATURE_GLOSS) != 0;
-    buffers_.allocate(BIND_HIT_SURFACE, "hit surfaces", glossy ? pixels_ * sizeof(gpu::HitSurface) : 0, Kind::uint_texels);
+    buffers_.allocate(BIND_HIT_SURFACE, "hit surfaces", glossy ? pixels_ * sizeof(gpu::HitSurface) : 0,
+                      Kind::uint_texels);
     const bool asks = ASKS_FOR_LIGHTS(features);
     buffers_.allocate(BIND_LIGHT_RAYS, "light rays", asks ? pixels_ * sizeof(gpu::LightRay) : 0, Kind::storage);
     buffers_.allocate(BIND_FILM, "film", pixels_ * sizeof(gpu::Film), Kind::word_texels);
@@ -154,8 +155,9 @@ void Integrator::allocate_photons() {
     allocate_sorted();
 }
 
-/// The levels of the grid, `wanted` or fewer, for which sorted photons fit the device, beside what is on it, and sorting
-/// them the loops of its driver. Fewer only where light paths store many more photons than is usual, or memory is short.
+/// The levels of the grid, `wanted` or fewer, for which sorted photons fit the device, beside what is on it, and
+/// sorting them the loops of its driver. Fewer only where light paths store many more photons than is usual, or memory
+/// is short.
 std::uint32_t Integrator::levels_that_fit(std::uint32_t wanted) const {
     constexpr std::uint64_t bytes = sizeof(gpu::Photon) + sizeof(gpu::PhotonFlux) + 2 * sizeof(gpu::uvec2);
     const std::uint64_t slots = std::uint64_t(params_.photon_lanes) * params_.photon_capacity;
@@ -348,8 +350,8 @@ std::vector<Integrator::PassHash> Integrator::run_hashed() {
     return hashes;
 }
 
-/// Reads the status. Where a pass ran out of its budget: gives it more and finishes the iteration up to pass `to`. Returns
-/// true where there was such a pass, so that iterations behind it have yet to run.
+/// Reads the status. Where a pass ran out of its budget: gives it more and finishes the iteration up to pass `to`.
+/// Returns true where there was such a pass, so that iterations behind it have yet to run.
 bool Integrator::unblock(Pass to) {
     bool was_blocked = false;
     while (true) {

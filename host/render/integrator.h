@@ -40,8 +40,8 @@ public:
         std::uint64_t hash = 0;
     };
 
-    /// Runs one iteration, a submission a pass, and returns the hash of each. Two renders that do the same have the same,
-    /// whatever the device's lanes, work groups and budgets: what passes leave for themselves alone is not in it.
+    /// Runs one iteration, a submission a pass, and returns the hash of each. Two renders that do the same have the
+    /// same, whatever the device's lanes, work groups and budgets: what passes leave for themselves alone is not in it.
     std::vector<PassHash> run_hashed();
 
     /// All that an iteration leaves to the next on the device, as bytes: pixels, film, statistics, grid. What is hit,

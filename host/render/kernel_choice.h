@@ -1,6 +1,6 @@
 #pragma once
-// Kernels in several forms that give the same bits, of which the fastest is found by measurement: what is best on software
-// Vulkan need not be so on a GPU.
+// Kernels in several forms that give the same bits, of which the fastest is found by measurement: what is best on
+// software Vulkan need not be so on a GPU.
 
 #include <cstddef>
 #include <cstdint>
@@ -26,7 +26,8 @@ struct KernelForm {
 /// "groups of 64" or "groups of 64, lanes wait".
 std::string text_of(const KernelForm& form);
 
-/// The forms worth trying on a device, the likeliest first: on software Vulkan the one that was measured, elsewhere all.
+/// The forms worth trying on a device, the likeliest first: on software Vulkan the one that was measured, elsewhere
+/// all.
 std::vector<KernelForm> forms_for(const DeviceInfo& device);
 
 /// Those of `forms` that make a difference to a kernel: one for kernels that hardly count.

@@ -350,7 +350,8 @@ void add_environment(const Scene& scene, FlatScene& flat, std::vector<WeighedLig
     std::vector<double> weights;  // mean channel of the flux into the scene, about
     for (std::uint32_t row = 0; row < rows; ++row) {
         const double top = height * row, middle = height * (row + 0.5), bottom = height * (row + 1.0);
-        // Integrals over the polar angle t of sin t, sin^2 t and |cos t| sin t; differences would cancel near the poles.
+        // Integrals over the polar angle t of sin t, sin^2 t and |cos t| sin t; differences would cancel near the
+        // poles.
         const double band = 2.0 * std::sin(middle) * std::sin(0.5 * height);
         const double across = 0.5 * (height - std::sin(height)) + std::sin(height) * std::pow(std::sin(middle), 2);
         const double upright =

@@ -13,8 +13,8 @@
 namespace vkcppm {
 
 /// Fills flat.lights and, where the scene has one, flat.environment and flat.environment_alias. The triangles, their
-/// materials, the bounds and the radius must be there. A textured emitter is cut into parts that are drawn in proportion
-/// to what they emit.
+/// materials, the bounds and the radius must be there. A textured emitter is cut into parts that are drawn in
+/// proportion to what they emit.
 void add_lights(const Scene& scene, FlatScene& flat);
 
 /// Of a sphere about the origin by which light from infinity enters, frame units: padded as the bounds are, 0 where all

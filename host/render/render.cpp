@@ -13,7 +13,8 @@
 namespace vkcppm {
 namespace {
 
-/// Wall and CPU seconds since it was made, without those that were spent in off_the_clock(), after those of earlier runs.
+/// Wall and CPU seconds since it was made, without those that were spent in off_the_clock(), after those of earlier
+/// runs.
 class Stopwatch {
 public:
     Stopwatch(double wall_before, double cpu_before)

@@ -78,9 +78,9 @@ const Camera& camera_of(const Settings& settings, const Scene& scene);
 /// image that does not fit the device (out_of_device_memory), on a lost device (device_lost), on a reference of another
 /// size (usage). Where it is measured, submissions end at snapshots, or with every iteration where it stops at an
 /// error; the picture is the same, and neither Settings::seconds nor the report's seconds count the time it takes.
-/// From a checkpoint, of the same scene and settings but for their bounds `iterations` and `seconds`, it goes on as if it
-/// had never ended: iterations, seconds, totals and curve count from the first start. on_hash: a submission is a pass, and
-/// the hash of each is told (Integrator::run_hashed); the picture is the same.
+/// From a checkpoint, of the same scene and settings but for their bounds `iterations` and `seconds`, it goes on as if
+/// it had never ended: iterations, seconds, totals and curve count from the first start. on_hash: a submission is a
+/// pass, and the hash of each is told (Integrator::run_hashed); the picture is the same.
 Rendering render(const Scene& scene, const Settings& settings, Device& device, const KeepGoing& keep_going,
                  const Measuring* measuring = nullptr, const Checkpointing& checkpointing = {},
                  const OnPassHash& on_hash = {});

@@ -23,8 +23,8 @@ public:
     /// Throws Error(out_of_device_memory) where the scene does not fit the device.
     SceneBuffers(Device& device, Bindings& bindings, const FlatScene& scene);
 
-    /// A buffer of `bytes` zeros at `binding`, and where kernels read it as texels, in place of what stood there. Throws
-    /// Error(out_of_device_memory).
+    /// A buffer of `bytes` zeros at `binding`, and where kernels read it as texels, in place of what stood there.
+    /// Throws Error(out_of_device_memory).
     void allocate(std::uint32_t binding, const std::string& name, std::uint64_t bytes, Buffer::Kind kind);
 
     /// The same that holds `data`.
@@ -61,8 +61,8 @@ inline constexpr double near_lamp = 0.04;
 gpu::Params scene_params(const Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings,
                          bool split);
 
-/// True where splitting the light of this scene takes what is near its lamps to the photons: it has lamps of some area, and
-/// no surface that is partly there.
+/// True where splitting the light of this scene takes what is near its lamps to the photons: it has lamps of some area,
+/// and no surface that is partly there.
 bool splits_near_lamps(const FlatScene& scene);
 
 }  // namespace vkcppm

@@ -22,8 +22,8 @@ std::string text(const glm::vec3& v) {
     return v.x == v.y && v.y == v.z ? fmt::format("{:g}", v.x) : fmt::format("({:g}, {:g}, {:g})", v.x, v.y, v.z);
 }
 
-/// A metal that is black all over: what exporters leave under a lamp. Schlick's white edge would have rays trace it, and
-/// every photon weighed, for nothing that anybody means: it takes all light in.
+/// A metal that is black all over: what exporters leave under a lamp. Schlick's white edge would have rays trace it,
+/// and every photon weighed, for nothing that anybody means: it takes all light in.
 bool is_black_metal(const Material& m) {
     return m.metallic == 1.0f && m.base_color == black && !m.metallic_roughness_texture;
 }

@@ -7,8 +7,8 @@
 
 namespace vkcppm {
 
-/// [materials] The least alpha on the triangles of each: factor, base colour texture and vertex colours together. 1 where
-/// the alpha mode is opaque.
+/// [materials] The least alpha on the triangles of each: factor, base colour texture and vertex colours together. 1
+/// where the alpha mode is opaque.
 std::vector<float> least_alphas(const Scene& scene);
 
 /// True where a material whose alpha goes down to `least_alpha` lets light pass: below 1 by BLEND, below the cutoff by

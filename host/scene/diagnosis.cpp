@@ -28,7 +28,8 @@ constexpr double least_intensity = 1e-6;       // W/sr; an indicator lamp has 1e
 constexpr double least_irradiance = 1e-6;      // W/m^2; a clear night without a moon
 constexpr double least_radiance = 1e-8;        // W m^-2 sr^-1; the night sky has 1e-7
 
-// Discs of photons do not shrink below 10^-6 of the scene's radius, and rays start as far off a surface that is as large.
+// Discs of photons do not shrink below 10^-6 of the scene's radius, and rays start as far off a surface that is as
+// large.
 constexpr double least_extent = 2e-5;          // of the scene's, for ten such discs across
 
 constexpr std::size_t most_solid_angles = std::size_t(1) << 22;  // a quarter of a second

@@ -54,7 +54,8 @@ void check_limits(const Buffer::Impl& buffer, const vk::PhysicalDeviceLimits& li
     if (buffer.bytes > limits.maxStorageBufferRange) refuse("bytes", buffer.bytes, limits.maxStorageBufferRange);
 }
 
-/// Some drivers, lavapipe for one, promise more memory than there is, and the system ends the program that believes them.
+/// Some drivers, lavapipe for one, promise more memory than there is, and the system ends the program that believes
+/// them.
 void check_heap(const Buffer::Impl& buffer) {
     const Device::Impl& device = buffer.device->impl();
     if (buffer.bytes <= device.info.memory_bytes - std::min(device.info.memory_bytes, device.allocated)) return;

@@ -78,7 +78,8 @@ std::string missing(const vk::raii::PhysicalDevice& physical) {
     }
     const std::uint32_t texels = BIND_FIRST_STORAGE - BIND_FIRST_TEXEL;
     if (std::min(limits.maxPerStageDescriptorSampledImages, limits.maxDescriptorSetSampledImages) < texels) {
-        return fmt::format("{} texel buffers a stage, {} are needed", limits.maxPerStageDescriptorSampledImages, texels);
+        return fmt::format("{} texel buffers a stage, {} are needed", limits.maxPerStageDescriptorSampledImages,
+                           texels);
     }
     if (limits.maxPushConstantsSize < sizeof(gpu::Launch)) return "push constants are too small";
     return "";

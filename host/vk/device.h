@@ -53,8 +53,8 @@ public:
     std::uint64_t allocated_bytes() const;
     std::uint64_t peak_bytes() const;
 
-    /// Pipelines as pipelines() gave them in an earlier run: kernels that are among them need not be compiled. False, and
-    /// nothing else, where their header is not this device's and this driver's. Before the first kernel.
+    /// Pipelines as pipelines() gave them in an earlier run: kernels that are among them need not be compiled. False,
+    /// and nothing else, where their header is not this device's and this driver's. Before the first kernel.
     bool reuse_pipelines(std::span<const std::byte> data);
     /// What the driver wants to have again: a header of 32 bytes, and behind it what it kept, which may be nothing.
     std::vector<std::byte> pipelines() const;

@@ -78,7 +78,8 @@ const float FIRST_NARROWER = 4.0;  // than the discs of other photons are those 
 // first: the photon has met its first surface that is not smooth; what comes after that is less sharp by far.
 float kernel_weight(float q, bool first) {
     if ((FEATURES & FEATURE_SPLIT) != 0u) {
-        // Twice the estimate of a disc of half the area less that of the whole: the bias in R^2 cancels (Richardson 1911).
+        // Twice the estimate of a disc of half the area less that of the whole: the bias in R^2 cancels (Richardson
+        // 1911).
         float scale = first ? FIRST_NARROWER * FIRST_NARROWER : 1.0;
         return q * scale < 0.5 ? 3.0 * scale : q * scale < 1.0 ? -scale : 0.0;
     }

@@ -56,8 +56,8 @@ uint observed_in(uint cells) {
     return sum;
 }
 
-// cells * count - sum: the textbook form of chi-squared cancels in floats. What is left of it here is exact up to 2^24 and
-// relative to a rounding error beyond, since the mean is taken off in integers. sum: at most 2^31.
+// cells * count - sum: the textbook form of chi-squared cancels in floats. Here the mean is taken off in integers, and
+// what is left is exact up to 2^24 and right to a rounding error beyond. sum: below 2^31.
 float scaled_difference(uint cells, uint count, uint sum) {
     return float(int(count - sum / cells)) * float(cells) - float(sum % cells);
 }

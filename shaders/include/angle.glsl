@@ -1,6 +1,6 @@
 // The angle of (x, y) to the x axis in (-pi, pi], to 4e-7; of (0, 0): 0. atan of the language differs from driver to
-// driver (Mesa 22.3.6 and 25.0.7: by up to 5e-7). This one is made of operations that Vulkan rounds exactly, but for the
-// quotient. atan(t) / t in t^2: Chebyshev series on [0, 1], to 1.6e-7.
+// driver (Mesa 22.3.6 and 25.0.7: by up to 5e-7). This one is made of operations that Vulkan rounds exactly, but for
+// the quotient. atan(t) / t in t^2: Chebyshev series on [0, 1], to 1.6e-7.
 float angle_of(float y, float x) {
     float a = abs(x);
     float b = abs(y);

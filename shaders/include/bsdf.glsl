@@ -1,8 +1,8 @@
 // How a surface scatters: glTF 2.0, appendix B, and the extensions for specular, transmission, volume, ior, clearcoat.
 // Pure functions. The lobes:
 //   diffuse       base / pi, times what its coat lets through
-//   reflection    GGX (Walter et al. 2007) with Smith's height-correlated masking (Heitz 2014), for metal, coat and glass
-//                 together: they share the roughness and differ in Fresnel reflectance alone
+//   reflection    GGX (Walter et al. 2007) with Smith's height-correlated masking (Heitz 2014), for metal, coat
+//                 and glass together: they share the roughness and differ in Fresnel reflectance alone
 //   transmission  through glass: refracted at a microfacet, or through a thin wall
 //   clearcoat     GGX again, on top of all
 // Width alpha = roughness^2. A lobe of width 0 is a delta: paths follow it and nothing is gathered on it.
@@ -165,7 +165,8 @@ float reflection_pdf(float alpha, vec3 n, vec3 wo, vec3 h) {
     return ggx(alpha, n, h) * smith_g1(alpha, cosine) / (4.0 * cosine);
 }
 
-// The same of refraction at h; eta = index on the side of wo / index beyond, wi_h = |wi . h| (Walter et al. 2007, Eq. 17).
+// The same of refraction at h; eta = index on the side of wo / index beyond, wi_h = |wi . h| (Walter et al. 2007, Eq.
+// 17).
 float refraction_pdf(float alpha, vec3 n, float wo_n, vec3 h, float eta, float wo_h, float wi_h) {
     float d = eta * wo_h - wi_h;
     return ggx(alpha, n, h) * smith_g1(alpha, wo_n) * wo_h / wo_n * wi_h / (d * d);
@@ -173,9 +174,9 @@ float refraction_pdf(float alpha, vec3 n, float wo_n, vec3 h, float eta, float w
 
 // ---- lobes ----
 
-// What every lobe sends on of light along wo, about: the largest channel, coats at h = n; but over the diffuse base seen
-// from above, for there h is far from n at grazing angles. Lobes are chosen in proportion. The facets of rough glass
-// turn from n to wo: some transmit where n would reflect all.
+// What every lobe sends on of light along wo, about: the largest channel, coats at h = n; but over the diffuse base
+// seen from above, for there h is far from n at grazing angles. Lobes are chosen in proportion. The facets of rough
+// glass turn from n to wo: some transmit where n would reflect all.
 vec4 lobes_of(Bsdf b, Surface surface, vec3 wo) {
     float cosine = min(1.0, dot(surface.normal, wo));
     float coat = clearcoat_fresnel(b, min(1.0, dot(surface.clearcoat_normal, wo)));
@@ -305,8 +306,8 @@ float followed_weight(float density, float cosine) {
     return density == DELTA ? 1.0 : density / (density + float(params.knn) * abs(cosine) / PI);
 }
 
-// The density, 1/sr, with which a lobe of width above 0 is chosen by choose_lobe in proportion to `lobes` and then gives
-// wi by sample_lobe. Less than a density in all where there are delta lobes.
+// The density, 1/sr, with which a lobe of width above 0 is chosen by choose_lobe in proportion to `lobes` and then
+// gives wi by sample_lobe. Less than a density in all where there are delta lobes.
 float scatter_density(Bsdf b, Surface surface, vec4 lobes, vec3 wo, vec3 wi) {
     vec3 n = surface.normal;
     float wo_n = dot(wo, n);
@@ -349,8 +350,8 @@ float rough_lobe(uint part, float alpha, float density, float wo_n, float wi_n) 
     return density * smith_masking(alpha, wo_n, wi_n) * weight / abs(wi_n);
 }
 
-// Light that arrives from wi and is scattered to wo, without the cosine: all lobes of width above 0, each with the weight
-// of its part.
+// Light that arrives from wi and is scattered to wo, without the cosine: all lobes of width above 0, each with the
+// weight of its part.
 vec3 rough_bsdf(Bsdf b, Surface surface, vec3 wo, vec3 wi, uint part) {
     vec3 n = surface.normal;
     float wo_n = dot(wo, n);
@@ -367,7 +368,8 @@ vec3 rough_bsdf(Bsdf b, Surface surface, vec3 wo, vec3 wi, uint part) {
             sum += facet_reflectance(b, wo_h) * (below * lobe);
         }
     }
-    if ((FEATURES & FEATURE_ROUGH) != 0u && (FEATURES & FEATURE_CLEARCOAT) != 0u && b.clearcoat_alpha > 0.0 && reflects) {
+    bool coats = (FEATURES & FEATURE_ROUGH) != 0u && (FEATURES & FEATURE_CLEARCOAT) != 0u;
+    if (coats && b.clearcoat_alpha > 0.0 && reflects) {
         vec3 c = surface.clearcoat_normal;
         float wo_c = dot(wo, c);
         float wi_c = dot(wi, c);

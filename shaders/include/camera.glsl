@@ -1,9 +1,9 @@
 // Where eye paths start.
 #define LENS_DIMENSION 6u  // stratified dimensions 0 and 1 place the ray in the pixel, 6 and 7 on the lens
 
-// Ray number `sequence` of a pixel, through a random point of it (box filter) and of the lens; distance: from the eye to
-// `origin`, at the scene's bounds. It begins in the plane of depth `start`, for whose points the host has taken the eye's
-// distance into account in double precision: from far away a direction in floats would miss what it aims at.
+// Ray number `sequence` of a pixel, through a random point of it (box filter) and of the lens; distance: from the eye
+// to `origin`, at the scene's bounds. It begins in the plane of depth `start`, for whose points the host has taken the
+// eye's distance into account in double precision: from far away a direction in floats would miss what it aims at.
 void camera_ray(uint pixel, uint sequence, out vec3 origin, out vec3 direction, out float distance) {
     vec2 jitter = vec2(stratified(params.seed, sequence, pixel, 0u),
                        stratified(params.seed, sequence, pixel, 1u));

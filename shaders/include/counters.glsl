@@ -1,6 +1,6 @@
 // Regions of the counter buffer, in words. The table of cell starts comes first: the searches index it directly.
-// cell starts [cells + 1] | photons of each path, then their offsets [photons + 1] | slot of the first of each [photons] |
-// radix histogram [digits x columns] | sums of scan blocks [scan_blocks].
+// cell starts [cells + 1] | photons of each path, then their offsets [photons + 1] | slot of the first of each
+// [photons] | radix histogram [digits x columns] | sums of scan blocks [scan_blocks].
 #define PATH_COUNTS (params.cells + 1u)
 #define PHOTON_TOTAL (PATH_COUNTS + params.photons)
 #define PATH_SLOTS (PHOTON_TOTAL + 1u)

@@ -8,7 +8,8 @@ layout(binding = BIND_ENVIRONMENT_ALIAS) uniform usamplerBuffer environment_alia
 // The pixel that is seen in `direction`, a unit vector away from the scene.
 uint environment_pixel(vec3 direction) {
     // The polar angle not by acos: devices know it to 1e-4 only.
-    vec2 uv = vec2(0.5 + angle_of(direction.z, direction.x) / (2.0 * PI), angle_of(length(direction.xz), direction.y) / PI);
+    float azimuth = angle_of(direction.z, direction.x), polar = angle_of(length(direction.xz), direction.y);
+    vec2 uv = vec2(0.5 + azimuth / (2.0 * PI), polar / PI);
     uvec2 pixel = min(uvec2(uv * vec2(params.environment)), params.environment - 1u);
     return pixel.y * params.environment.x + pixel.x;
 }

@@ -28,8 +28,8 @@ uint invocation() { return work_group() * gl_WorkGroupSize.x + gl_LocalInvocatio
 
 #define RIFFLED_GROUPS 16u  // that stay together: memory is read best in order
 
-// The pixel of this invocation. Software Vulkan gives every thread one run of consecutive work groups, and one half of a
-// picture may cost twice as much as the other: the groups are riffled, so that every run has some of all. Each riffle
+// The pixel of this invocation. Software Vulkan gives every thread one run of consecutive work groups, and one half of
+// a picture may cost twice as much as the other: the groups are riffled, so that every run has some of all. Each riffle
 // deals the first half to the even places and the second to the odd ones; what does not fill a pack stays at the end.
 uint invocation_pixel() {
     uint group = work_group();

@@ -87,7 +87,8 @@ float environment_density(vec3 away) {
 struct LightSample {
     vec3 direction;   // unit, towards the light
     float distance;
-    vec3 radiance;    // over the density of the sample; of punctual lights the irradiance across it over the probability
+    vec3 radiance;    // over the density of the sample; of punctual lights the irradiance across it, over the
+                      // probability
     float density;    // about that of the direction, 1/sr, the same function as of what a path meets; 0: punctual
     uint triangle;    // that the light is a part of; NO_TRIANGLE: none
 };

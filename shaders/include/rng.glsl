@@ -6,7 +6,8 @@
 #define STREAM_PHOTON 1u
 #define STREAM_GATHER 2u
 #define STREAM_SHIFT 3u
-#define STREAM_PATH 3u     // the shift uses dimensions below STRATIFIED_DIMENSIONS of iteration 0 alone, paths none of them
+#define STREAM_PATH 3u     // the shift uses dimensions below STRATIFIED_DIMENSIONS of iteration 0 alone, paths none of
+                           // them
 #define STREAMS 4u
 
 uvec4 pcg4d(uvec4 v) {

@@ -38,8 +38,8 @@ vec3 sample_cone(float v, float u) {
     return vec3(sin_theta * cos(phi), sin_theta * sin(phi), 1.0 - v);
 }
 
-// The angular attenuation of a glTF spot light: inner, outer: versines of its cones. Cosines of cones below 1e-3 rad are
-// 1 but for their last bits.
+// The angular attenuation of a glTF spot light: inner, outer: versines of its cones. Cosines of cones below 1e-3 rad
+// are 1 but for their last bits.
 float spot_attenuation(float inner, float outer, float v) {
     float fall = clamp((outer - v) / (outer - inner), 0.0, 1.0);
     return fall * fall;

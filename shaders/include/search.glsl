@@ -63,9 +63,9 @@ bool accepts(GridLevel level, Walk walk, uvec4 photon, vec3 position, float reac
 }
 
 // Loops over the segments of a box from `cursor` on while `steps` last and ROOM holds: cursor then says where to go on.
-// PHOTONS goes through photons [walk.first, walk.last) of the segment at hand while it has steps, one a photon; a segment
-// costs one more. Loops instead of branches: software Vulkan runs every branch of a loop body for every lane, so rows are
-// kept out of the inner one.
+// PHOTONS goes through photons [walk.first, walk.last) of the segment at hand while it has steps, one a photon; a
+// segment costs one more. Loops instead of branches: software Vulkan runs every branch of a loop body for every lane,
+// so rows are kept out of the inner one.
 #define FOR_SEGMENTS(box, cursor, walk, steps, ROOM, PHOTONS)                                         \
     for (ivec3 cell = cursor_cell(cursor, box); cell.z <= box.high.z && steps > 0 && (ROOM);) {       \
         walk = walk_segment(box, cell);                                                               \

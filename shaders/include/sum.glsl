@@ -1,8 +1,8 @@
 // Sums of very many terms, and what must not take part in one. Pure functions.
 
-// Adds `value` to the sum of two floats, `low` below half an ulp of `sum` (Dekker 1971): 10^6 additions err by 10^6 2^-47
-// of the sum. A `low` that is only added to (Neumaier 1974) grows until its own rounding shows, with the square of their
-// number.
+// Adds `value` to the sum of two floats, `low` below half an ulp of `sum` (Dekker 1971): 10^6 additions err by 10^6
+// 2^-47 of the sum. A `low` that is only added to (Neumaier 1974) grows until its own rounding shows, with the square
+// of their number.
 void add(inout float sum, inout float low, float value) {
     precise float total = sum + value;
     precise float lost = abs(sum) >= abs(value) ? (sum - total) + value : (value - total) + sum;

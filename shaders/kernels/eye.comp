@@ -171,7 +171,8 @@ void main() {
             vec3 factor = light.radiance * rough_bsdf(bsdf, surface, wo, light.direction, PART_FOLLOWED);
             factor *= abs(dot(light.direction, surface.normal)) * transmittance_to(light, memory, bsdf, surface);
             // What a path of full length would meet next it does not meet. (Rays to lights pass any number of surfaces
-            // that are partly there, of which each costs a path a bounce: where it has too few left that share is lost.)
+            // that are partly there, of which each costs a path a bounce: where it has too few left that share is
+            // lost.)
             if (light.density > 0.0 && (memory & PATH_BOUNCES) < params.max_depth) {
                 float other = rough_share * scatter_density(bsdf, surface, vec4(0.0, rough), wo, light.direction);
                 factor *= light.density / (light.density + other);

@@ -37,9 +37,9 @@ void glossy_hit(uint pixel, out Surface surface, out Bsdf bsdf, out vec3 outgoin
     bsdf = bsdf_of(material, index_for_path(material, STREAM_EYE, pixel, memory, weight), surface.front);
 }
 
-// Runs of at most 32 photons that wait to be weighed, those accepted marked in a word. The test of the distance takes all
-// lanes through all photons of the cells, of which it accepts a third; weighing them apart takes each lane through its own
-// alone. That is most of the work where photons are weighed by a BSDF.
+// Runs of at most 32 photons that wait to be weighed, those accepted marked in a word. The test of the distance takes
+// all lanes through all photons of the cells, of which it accepts a third; weighing them apart takes each lane through
+// its own alone. That is most of the work where photons are weighed by a BSDF.
 #define QUEUE 16u
 
 void main() {
@@ -83,8 +83,9 @@ void main() {
         uint queued = 0u;
         FOR_SEGMENTS(box, cursor, walk, steps, queued < QUEUE, {
             uvec2 run = uvec2(walk.first, 0u);
-            // Left at its end, for software Vulkan runs the body of a loop once more where it is left at its start. There,
-            // lanes that have left go through the rest of the trips with what they had: the body makes the same of it.
+            // Left at its end, for software Vulkan runs the body of a loop once more where it is left at its start.
+            // There, lanes that have left go through the rest of the trips with what they had: the body makes the same
+            // of it.
             uint bit = walk.first < walk.last ? 1u : 0u;
             do {
                 uvec4 photon = texelFetch(sorted, int(bit != 0u ? walk.first : 0u));

@@ -1,7 +1,7 @@
 #version 460
 // One invocation a lane of `photons_per_lane` paths: makes their photons compact in the order of paths and bounces, and
-// counts them by cell, for level launch.count of the grid. Reads photons, the slots of the paths and the scanned counts;
-// writes pairs_a (cell, slot) and counters[cell]. O(photons of the lane).
+// counts them by cell, for level launch.count of the grid. Reads photons, the slots of the paths and the scanned
+// counts; writes pairs_a (cell, slot) and counters[cell]. O(photons of the lane).
 #include "include/kernel.glsl"
 #include "include/grid.glsl"
 #include "include/counters.glsl"

@@ -1,8 +1,8 @@
 #version 460
 // Starting radii: one invocation a pixel that sees a diffuse surface and has no seeded radius yet, in any order. Its
 // squared radius becomes the squared distance of the k-th nearest accepted photon of this iteration; strict < in the
-// gather then leaves k - 1 inside, which makes (k - 1) / (pi R^2) unbiased. With fewer than k photons within the largest
-// radius it keeps that one and tries again next iteration: the estimate truncated there is unbiased too.
+// gather then leaves k - 1 inside, which makes (k - 1) / (pi R^2) unbiased. With fewer than k photons within the
+// largest radius it keeps that one and tries again next iteration: the estimate truncated there is unbiased too.
 // Reads searches, hits, grid, sorted photons; writes pixels, tally, nearest, cursors; gathered[] holds the state of the
 // search (flux.x: largest kept squared distance, flux.y: its index, flux.z: search radius, count: kept).
 // O(photons in the cells met + k per replacement). Fails by running out of steps: goes on next round.

@@ -2,8 +2,8 @@
 // The path tracer: one invocation a pixel, launch.count paths of it one after the other, so that a SIMD group stays
 // full. Unbiased: every vertex with a lobe of width above 0 asks for one point of the lights, and what the next ray
 // meets counts too; both are weighed by the power heuristic (Veach 1997, section 9.2.4), punctual lights are asked for
-// alone. A ray to a light is stopped by glass. Where light is split (FEATURE_SPLIT) what photons bring is left out; else
-// light of punctual lights by way of delta lobes is missing, which no path finds.
+// alone. A ray to a light is stopped by glass. Where light is split (FEATURE_SPLIT) what photons bring is left out;
+// else light of punctual lights by way of delta lobes is missing, which no path finds.
 // Reads the scene and the lights; writes image [P], the mean of the launch's paths, and traces. O(paths x bounces x log
 // triangles). Fails by running out of steps: goes on next round.
 #include "include/kernel.glsl"
@@ -30,8 +30,8 @@ layout(binding = BIND_IMAGE, scalar) writeonly buffer ImageBlock { vec3 image[];
 #define FIRST_DIMENSION 16u    // of random numbers, beyond the stratified ones; three a bounce
 
 TraceState new_path(uint done, vec3 sum) {
-    return TraceState(vec3(0.0), PATH_OUTSIDE | PATH_STRAIGHT, vec3(0.0), DELTA, vec3(1.0), 0.0, vec3(0.0), done, sum, 0u,
-                      no_light_ray());
+    return TraceState(vec3(0.0), PATH_OUTSIDE | PATH_STRAIGHT, vec3(0.0), DELTA, vec3(1.0), 0.0, vec3(0.0), done, sum,
+                      0u, no_light_ray());
 }
 
 float power_heuristic(float density, float other) {
@@ -63,7 +63,8 @@ void ask_for_light(inout TraceState state, Bsdf bsdf, Surface surface, vec4 lobe
     }
     factor *= transmittance_to(light, state.memory, bsdf, surface);
     // What is lit so near, and seen by way of another surface, is left to photons.
-    bool near = (state.memory & PATH_STRAIGHT) == 0u && light.triangle != NO_TRIANGLE && light.distance < params.near_lights;
+    bool near = (state.memory & PATH_STRAIGHT) == 0u && light.triangle != NO_TRIANGLE &&
+                light.distance < params.near_lights;
     if (!near) state.light_ray = ray_to(light, state.throughput * factor, surface);
 }
 

@@ -1,9 +1,9 @@
 #version 460
-// The lanes of a SIMD group share light paths, `photons_per_lane` for each of them: a lane takes the next one when its own
-// ends, so that none is idle before all are taken. Which lane traces a path changes nothing: its photons are found by
-// the path. Reads the scene and the lights; writes photons [lanes x capacity], photon_flux, how many photons a path has
-// stored and where (counters), paths. O(paths x bounces x log triangles). Fails by running out of steps (goes on next
-// round) or of slots (counts on without storing, reports the number needed).
+// The lanes of a SIMD group share light paths, `photons_per_lane` for each of them: a lane takes the next one when its
+// own ends, so that none is idle before all are taken. Which lane traces a path changes nothing: its photons are found
+// by the path. Reads the scene and the lights; writes photons [lanes x capacity], photon_flux, how many photons a path
+// has stored and where (counters), paths. O(paths x bounces x log triangles). Fails by running out of steps (goes on
+// next round) or of slots (counts on without storing, reports the number needed).
 #include "include/kernel.glsl"
 #include "include/rng.glsl"
 #include "include/frame.glsl"
@@ -110,8 +110,8 @@ void main() {
             float ior = index_for_path(material, STREAM_PHOTON, path, state.memory, state.power);
             Bsdf bsdf = bsdf_of(material, ior, surface.front);
             if ((FEATURES & FEATURE_UNLIT) != 0u && has(material, SURFACE_UNLIT)) bsdf = black();
-            // What is black reflects no photon to any eye. Where a surface is partly there the photon counts in full: it
-            // tells how much light arrives, and the eye path has asked for the surface.
+            // What is black reflects no photon to any eye. Where a surface is partly there the photon counts in full:
+            // it tells how much light arrives, and the eye path has asked for the surface.
             // Where light is split, the rest is left to paths.
             bool counts = (FEATURES & FEATURE_SPLIT) == 0u || (state.memory & PATH_CAUSTIC) != 0u;
             if (counts && gathers_light(bsdf)) {

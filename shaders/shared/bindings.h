@@ -5,7 +5,7 @@
 // Uniform buffer.
 #define BIND_PARAMS 0
 // Texel buffers: software Vulkan reads a texel of four words for the lanes of a SIMD group at once, and every word of a
-// storage buffer lane by lane.
+// storage buffer lane by lane. What an invocation has stored it does not read as texels in the same launch.
 #define BIND_NODES 1                 // usamplerBuffer, 4 texels a BvhNode
 #define BIND_TRIANGLES 2             // samplerBuffer, 3 texels a TriangleGeometry
 #define BIND_SHADING 3               // usamplerBuffer, 1 texel a TriangleShading
@@ -16,8 +16,8 @@
 #define BIND_COUNTER_TEXELS 8        // usamplerBuffer over BIND_COUNTERS, a word a texel
 #define BIND_TEXCOORDS 9             // samplerBuffer, 3 texels a triangle: (u, v) of set 0 and of set 1 a corner
 #define BIND_VERTEX_COLORS 10        // usamplerBuffer, 2 texels a triangle: 4 half floats a corner, then 2 unused words
-#define BIND_TANGENTS 11             // usamplerBuffer, 1 texel a triangle: an octahedral tangent a corner; last word: per
-                                     // corner bit c: there is one, bit c + 3: its bitangent points the other way
+#define BIND_TANGENTS 11             // usamplerBuffer, 1 texel a triangle: an octahedral tangent a corner; last word:
+                                     // per corner bit c: there is one, bit c + 3: its bitangent points the other way
 #define BIND_TEXTURES 12             // usamplerBuffer, 3 texels a TextureLookup
 #define BIND_TEXELS 13               // usamplerBuffer, 1 word a texel of an image: 8 bits a channel
 #define BIND_ENVIRONMENT 14          // samplerBuffer, 1 texel a pixel: radiance, keep of its alias table

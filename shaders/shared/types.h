@@ -60,8 +60,8 @@ using uint = std::uint32_t;
 #define FEATURE_ENVIRONMENT 0x800000u
 #define FEATURE_SPLIT 0x1000000u       // light is split in two: photons bring caustics and what is lit at less than
                                        // near_lights from its lamp, as fixtures are, paths the rest: render/reference.h
-// Eye paths ask for lights where they may follow a rough lobe. Where light is split photons bring caustics alone, and of
-// those an eye path finds what it meets by delta lobes after it has followed a rough one.
+// Eye paths ask for lights where they may follow a rough lobe. Where light is split photons bring caustics alone, and
+// of those an eye path finds what it meets by delta lobes after it has followed a rough one.
 #define ASKS_FOR_LIGHTS(features) (((features) & FEATURE_ROUGH) != 0u && ((features) & FEATURE_SPLIT) == 0u)
 #define FEATURE_PUNCTUAL_LIGHTS (FEATURE_POINT_LIGHTS | FEATURE_SPOT_LIGHTS | FEATURE_DIRECTIONAL_LIGHTS)
 
@@ -116,7 +116,8 @@ using uint = std::uint32_t;
 // Top bit of TriangleShading::material: the three normals are the geometric normal.
 #define SHADING_FLAT 0x80000000u
 
-// 4-wide node, 64 bytes, read as 4 uvec4 texels. Box of child c on axis a: origin[a] + 2^(exponent[a]-127) * q[a] byte c.
+// 4-wide node, 64 bytes, read as 4 uvec4 texels. Box of child c on axis a: origin[a] + 2^(exponent[a]-127) * q[a] byte
+// c.
 struct BvhNode {
     vec3 origin;
     uint exponents;    // biased exponents of the cell size, x | y << 8 | z << 16; bit 24 + c: there is a child c
@@ -185,8 +186,8 @@ struct TextureLookup {
     uint unused[2];
 };
 
-// One entry of the alias table of lights; 96 bytes, read as 6 uvec4 texels, of which photons read two for textured lights
-// only. A path that starts here carries `power`: flux of the light / its probability.
+// One entry of the alias table of lights; 96 bytes, read as 6 uvec4 texels, of which photons read two for textured
+// lights only. A path that starts here carries `power`: flux of the light / its probability.
 struct Light {
     vec3 position;     // triangle: v0; point, spot: position
     uint kind;         // LIGHT_*
@@ -208,10 +209,10 @@ struct Photon {
     uint normal;       // geometric, on the side it arrived at, octahedral snorm16x2
 };
 struct PhotonFlux {
-    vec3 power;        // W (frame-scaled), not yet divided by the number of emitted paths; red with its sign bit set: the
-                       // photon comes straight from a punctual light by way of mirrors and smooth glass alone, and
-                       // at least one: no eye path finds its light. Green with its sign bit set, where light is split: its
-                       // first surface that is not smooth
+    vec3 power;        // W (frame-scaled), not yet divided by the number of emitted paths; red with its sign bit set:
+                       // the photon comes straight from a punctual light by way of mirrors and smooth glass alone,
+                       // and at least one: no eye path finds its light. Green with its sign bit set, where light is
+                       // split: its first surface that is not smooth
     uint direction;    // unit, towards where it came from, octahedral snorm16x2
 };
 
@@ -244,11 +245,11 @@ struct HitSurface {
 #define PATH_STRAIGHT 0x800u    // it has met nothing but delta lobes since it left the eye or a punctual light
 #define PATH_DISPERSED 0x1000u  // its wavelength is drawn
 #define PATH_DIRECT 0x2000u     // a photon that has met nothing yet since it left a punctual light or a triangle
-#define PATH_SCATTERED 0x4000u  // where light is split: a photon since it met another lobe than a delta, but for the surface
-                                // near its lamp; an eye path whose last lobe was no delta, and one before it neither
+#define PATH_SCATTERED 0x4000u  // where light is split: a photon since it met another lobe than a delta, but for the
+                                // surface near its lamp; an eye path whose last lobe was no delta, and one before it neither
 #define PATH_SEEN 0x4000u       // an eye path that has met a surface that is there
-#define PATH_CAUSTIC 0x8000u    // a photon that left its light by way of a delta lobe, or of a surface near a lamp; an eye
-                                // path whose last lobe was a delta and one before was not
+#define PATH_CAUSTIC 0x8000u    // a photon that left its light by way of a delta lobe, or of a surface near a lamp; an
+                                // eye path whose last lobe was a delta and one before was not
 #define PATH_MEDIUM_SHIFT 16u
 #define PATH_NO_MEDIUM 0xffffu  // also the largest number of materials
 
@@ -262,7 +263,8 @@ struct LightRay {
 };
 #define NO_TRIANGLE 0xffffffffu
 
-// Sum of one pass of the gather over a pixel's disc, read as 2 texels. While an eye path is unfinished: the rest of what it remembers.
+// Sum of one pass of the gather over a pixel's disc, read as 2 texels. While an eye path is unfinished: the rest of
+// what it remembers.
 struct Gathered {
     vec3 flux;         // sum of photon power * correction, without the hit's weight; unfinished: direction of the ray
     uint count;        // accepted photons; unfinished: the state that the path ends in, HIT_UNFINISHED: it goes on
@@ -346,15 +348,15 @@ struct Cursor {
 
 #define GRID_LEVELS 4      // at most
 
-// The grid in force. Every level has cells of its own size and holds all photons: discs look at those of the level whose
-// cells suit them.
+// The grid in force. Every level has cells of its own size and holds all photons: discs look at those of the level
+// whose cells suit them.
 struct Grid {
     vec3 origin;
     uint levels;                      // in use, from the finest on
     uvec4 dims[GRID_LEVELS];          // cells an axis; w: 0 dense rows, else mask of the hash table
     float cell[GRID_LEVELS];          // side
     float inverse_cell[GRID_LEVELS];
-    float reach[GRID_LEVELS];         // largest radius that looks here; from the last level in use on: the largest float
+    float reach[GRID_LEVELS];         // largest radius that looks here; the largest float from the last in use on
     uint first[GRID_LEVELS];          // its first entry of the table of cell starts
     uint entries;                     // of that table, in use: at most params.cells
 };
@@ -440,7 +442,7 @@ struct Launch {
     uint round;        // of a resumable pass
     uint last_round;   // 1: unfinished work blocks the passes that follow
     uint offset;       // scan: first element; radix: shift of the digit; update: 1 counts the radii
-    uint count;        // scan: elements; path: paths a pixel; grid_key: level; radix: 0 reads pairs[0], 1 reads pairs[1]
+    uint count;        // scan: elements; path: paths a pixel; grid_key: level; radix: 0 reads pairs_a, 1 pairs_b
 };
 
 #ifdef __cplusplus

@@ -143,7 +143,8 @@ Seconds embree_seconds(const reference::Embree& embree, const Rays& rays, unsign
     });
 }
 
-/// Share of rays whose distance is not Embree's. Rays along edges may differ; more than a few would make the times idle.
+/// Share of rays whose distance is not Embree's. Rays along edges may differ; more than a few would make the times
+/// idle.
 double differing(const reference::Embree& embree, const Rays& rays, const std::vector<gpu::RayOutput>& hits) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {

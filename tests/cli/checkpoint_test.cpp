@@ -70,8 +70,8 @@ TEST_F(Checkpoint, EveryEstimatorGoesOnWithTheSameBytes) {
     }
 }
 
-// kill -9 at 20 moments: ten after a random time since the start of the program, ten after one since it began to write a
-// checkpoint of 2 MB, which it does after every submission. Nothing is asked of the moments.
+// kill -9 at 20 moments: ten after a random time since the start of the program, ten after one since it began to write
+// a checkpoint of 2 MB, which it does after every submission. Nothing is asked of the moments.
 TEST_F(Checkpoint, SurvivesBeingKilledAtAnyMoment) {
     std::mt19937 random(7);
     std::uniform_int_distribution<int> since_start(0, 300'000), since_write(0, 12'000);  // microseconds

@@ -83,7 +83,8 @@ TEST_P(PathTracerRooms, AgreeWithDoublePrecision) {
 INSTANTIATE_TEST_SUITE_P(Features, PathTracerRooms, testing::ValuesIn(material_cases()),
                          [](const auto& info) { return std::string(info.param.name); });
 
-/// Regions of <name>.expect.json, as closed_form_test.cpp takes them: 5 standard errors are allowed, and `bias`, relative.
+/// Regions of <name>.expect.json, as closed_form_test.cpp takes them: 5 standard errors are allowed, and `bias`,
+/// relative.
 void expect_regions(const std::string& name, const std::function<reference::PathTracing(const Settings&)>& render,
                     double bias) {
     std::ifstream file(std::filesystem::path(VKCPPM_SOURCE_DIR) / "scenes" / (name + ".expect.json"));

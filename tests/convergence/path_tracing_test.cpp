@@ -1,5 +1,5 @@
-// The scenes of the project by photon mapping and by the reference path tracer, in double precision and without photons.
-// Of the paper's scenes only blocks count where path tracing has converged: it hardly finds their caustics.
+// The scenes of the project by photon mapping and by the reference path tracer, in double precision and without
+// photons. Of the paper's scenes only blocks count where path tracing has converged: it hardly finds their caustics.
 
 #include <algorithm>
 #include <string>

@@ -340,8 +340,8 @@ struct Warp {
 };
 
 /// Density of wi that following one lobe of width alpha about +z has, 1/sr: visible normals (Heitz 2014) times the
-/// Jacobian of reflection or of refraction (Walter et al. 2007, equations 14 and 17). ratio: index on the side of wo over
-/// that beyond.
+/// Jacobian of reflection or of refraction (Walter et al. 2007, equations 14 and 17). ratio: index on the side of wo
+/// over that beyond.
 double lobe_density(LobeIndex lobe, double alpha, bool thin, double ratio, const glm::dvec3& wo, glm::dvec3 wi) {
     if ((wi.z < 0.0) != (lobe == transmission)) return 0.0;
     if (lobe == diffuse) return wi.z / pi;
@@ -422,8 +422,9 @@ private:
     Warp polar_, azimuth_;
 };
 
-/// Shares of the bins in what visible normals about +z refract, by midpoints over the normals: as a density of directions
-/// that falls like a root where refraction ends. FollowingAndGatheringMakeOneWhole holds that density to account.
+/// Shares of the bins in what visible normals about +z refract, by midpoints over the normals: as a density of
+/// directions that falls like a root where refraction ends. FollowingAndGatheringMakeOneWhole holds that density to
+/// account.
 std::vector<double> refracted_shares(const SphereBins& bins, double alpha, double ratio, const glm::dvec3& wo) {
     constexpr int steps = 700;
     std::vector<double> shares(bins.count(), 0.0);
@@ -533,8 +534,9 @@ TEST_F(BsdfLobes, DirectionsFollowTheDensityThatTheyReport) {
 }
 
 TEST_F(BsdfLobes, FollowingAndGatheringMakeOneWhole) {
-    // What following finds, weighed, and what photons bring from everywhere, weighed, add up to the albedo. Gathering is
-    // integrated over cosine-distributed directions of both sides: its weighed values times pi are at most knn or so.
+    // What following finds, weighed, and what photons bring from everywhere, weighed, add up to the albedo. Gathering
+    // is integrated over cosine-distributed directions of both sides: its weighed values times pi are at most knn or
+    // so.
     constexpr std::size_t samples = 1u << 15;
     const auto inputs = random_numbers(samples, 25);
     std::vector<gpu::BsdfInput> everywhere = inputs;

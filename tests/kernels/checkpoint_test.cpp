@@ -44,8 +44,8 @@ void expect_same_bits(const Rig& a, const Rig& b, const std::string& what) {
 
 class Checkpoints : public GpuTest, public testing::WithParamInterface<std::string> {};
 
-// The grid is planned before iterations 0, 1, 2, 4, ... and multiples of 16 from what iterations before have left: put down
-// right before, right after and between two plans.
+// The grid is planned before iterations 0, 1, 2, 4, ... and multiples of 16 from what iterations before have left: put
+// down right before, right after and between two plans.
 TEST_P(Checkpoints, GoOnWithTheSameBits) {
     constexpr std::uint32_t last = 34;
     struct Kept {

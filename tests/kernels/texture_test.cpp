@@ -349,8 +349,8 @@ TEST_F(Textures, SurfacesAreTheReferences) {
 }
 
 TEST_F(Textures, ANormalMapBendsTowardsTheTopOfItsImage) {
-    // Unit square that faces +z, the picture upright on it (u to the right, v down), or mirrored left to right, or upside
-    // down. Green above one half bends up as the picture has it, red to the right of it.
+    // Unit square that faces +z, the picture upright on it (u to the right, v down), or mirrored left to right, or
+    // upside down. Green above one half bends up as the picture has it, red to the right of it.
     struct View {
         const char* name;
         glm::vec3 right, up;  // of the picture, in space

@@ -44,8 +44,8 @@ Scene as_uploaded(const FlatScene& flat) {
     return scene;
 }
 
-/// Distance of the line of the ray to the nearest edge of a triangle, times how much of that edge's length is seen along
-/// the ray: u and v are rounded relative to the determinant, so that edges seen end-on are the least certain.
+/// Distance of the line of the ray to the nearest edge of a triangle, times how much of that edge's length is seen
+/// along the ray: u and v are rounded relative to the determinant, so that edges seen end-on are the least certain.
 double distance_to_edges(const Scene& scene, std::uint32_t triangle, const gpu::RayInput& ray) {
     const glm::dvec3 d = glm::normalize(glm::dvec3(ray.direction));
     double nearest = std::numeric_limits<double>::infinity();

@@ -1,4 +1,5 @@
-// Glass: at grazing angles, where all light is reflected, within other glass, against other surfaces, round eye and light.
+// Glass: at grazing angles, where all light is reflected, within other glass, against other surfaces, round eye and
+// light.
 
 #include <cmath>
 #include <functional>
@@ -97,8 +98,8 @@ TEST_F(Dielectrics, RoundALight) {
                  0.03);
 }
 
-// No path from the eye can find the light: photons alone bring it, and eye paths have to go through the glass to meet them.
-// The floor is nearly black, so that little comes back from the glass.
+// No path from the eye can find the light: photons alone bring it, and eye paths have to go through the glass to meet
+// them. The floor is nearly black, so that little comes back from the glass.
 TEST_F(Dielectrics, BetweenADeltaLightAndAFloorSeenThroughIt) {
     const auto seen = [](bool with_glass) {
         Scene scene;
@@ -110,7 +111,8 @@ TEST_F(Dielectrics, BetweenADeltaLightAndAFloorSeenThroughIt) {
     };
     constexpr Extent size{16, 16};
     const Image through = picture(seen(true), 64, 16384, size), plain = picture(seen(false), 64, 16384, size);
-    // Both sides of a plate, all reflections between them: (1 - R) / (1 + R); angles differ by less than 0.2 rad from 0.
+    // Both sides of a plate, all reflections between them: (1 - R) / (1 + R); angles differ by less than 0.2 rad from
+    // 0.
     const double reflectance = 0.04, plate = (1.0 - reflectance) / (1.0 + reflectance);
     expect_error("a delta light through glass, floor seen through glass",
                  mean_difference(through, scaled(plain, plate * plate)), 0.01);

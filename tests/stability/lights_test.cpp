@@ -75,8 +75,8 @@ TEST_F(HardLights, OfNarrowCones) {
             const glm::dvec3 offset = (glm::dvec3(photons[i].position) - centre) / rig.flat.frame.length(1.0);
             sum += offset.x * offset.x + offset.z * offset.z;
         }
-        // With an inner cone of 0 the density falls as (1 - v / v_o)^2 over versines v < v_o = cone^2 / 2: E[v] = v_o / 4,
-        // and r^2 = 2 v on the floor.
+        // With an inner cone of 0 the density falls as (1 - v / v_o)^2 over versines v < v_o = cone^2 / 2: E[v] = v_o /
+        // 4, and r^2 = 2 v on the floor.
         const double want = cone * cone / 4.0;
         expect_error(fmt::format("mean square radius of a spot of {:g} rad", cone),
                      std::abs(sum / settings.photons / want - 1.0), cone < 1e-5 ? 0.1 : 0.03);

@@ -1,4 +1,5 @@
-// Triangles that are hard to meet: thin, without area, on one another, edge on; and rays that must not get between them.
+// Triangles that are hard to meet: thin, without area, on one another, edge on; and rays that must not get between
+// them.
 
 #include <cmath>
 #include <functional>
@@ -49,8 +50,8 @@ protected:
 
     static void add_whole(Scene& scene) { add_quad(scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 0); }
 
-    /// Every ray starts within the mesh, near its middle; half of them aim at vertices and at points of edges. Returns the
-    /// share that leaves it.
+    /// Every ray starts within the mesh, near its middle; half of them aim at vertices and at points of edges. Returns
+    /// the share that leaves it.
     static double escaping(const Scene& scene, std::size_t count) {
         const FlatScene flat = flatten(scene);
         Random random(7);
@@ -119,8 +120,8 @@ TEST_F(HardMeshes, ClosedOnesAreWatertight) {
                  }), rays), at_most);
 }
 
-// With corners in the order of the file (first_corner) 0.0070 and 0.0075; with hits outside their needles, too, 0.044 and
-// 0.017.
+// With corners in the order of the file (first_corner) 0.0070 and 0.0075; with hits outside their needles, too, 0.044
+// and 0.017.
 TEST_F(HardMeshes, OfNeedlesAndSlivers) {
     const Image easy = picture(floor(add_whole));
     for (const int strips : {100, 10000}) {
@@ -165,8 +166,8 @@ TEST_F(HardMeshes, WithTrianglesOfNoArea) {
     expect_error("2,000 triangles without area, and lamps", difference(hard, easy), 1e-5);
 }
 
-// All triangles kept (distinct_triangles): 1.07 for two copies, as both lamps shine and one is seen; of 10,000, "400 rays
-// need more than 7167 steps of the BVH each".
+// All triangles kept (distinct_triangles): 1.07 for two copies, as both lamps shine and one is seen; of 10,000, "400
+// rays need more than 7167 steps of the BVH each".
 TEST_F(HardMeshes, OfManyTrianglesInOnePlace) {
     const Image easy = picture(floor(add_whole));
     const auto repeated = [](int times) {

@@ -1,5 +1,5 @@
-// The same scene, smaller, larger, elsewhere, seen from far away, brighter, darker: the same picture. Paths get the same
-// random numbers, so pictures differ by the few paths that rounding sends elsewhere.
+// The same scene, smaller, larger, elsewhere, seen from far away, brighter, darker: the same picture. Paths get the
+// same random numbers, so pictures differ by the few paths that rounding sends elsewhere.
 
 #include <cmath>
 #include <string>

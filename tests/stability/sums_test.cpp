@@ -244,8 +244,8 @@ TEST_F(Sums, ChiSquared) {
     }
 }
 
-// Counters that wrap: `photons` at 119,999,704 and rays of 2^32 lost; a tally that is never full holds 8.6e9 photons, its
-// next iterations beyond 2^32.
+// Counters that wrap: `photons` at 119,999,704 and rays of 2^32 lost; a tally that is never full holds 8.6e9 photons,
+// its next iterations beyond 2^32.
 TEST_F(Sums, CountersNearTheirEnd) {
     Rig rig = rig_of("cppm");
     const std::size_t n = rig.pixels(), cells = rig.settings.rings * rig.settings.sectors;

@@ -1,7 +1,8 @@
 // The update kernel of the estimators that test or adapt against the double-precision reference, on random states.
 // A state whose p-value lies so near the significance that the kernel's floats may fall on the other side is left out
 // and counted: within 1e-5 for chi-squared; within 1e-4 for the F-tests, whose means are floats: after 10^4 samples
-// means differ significantly that share their first two digits. (Interpolating the thresholds moves p by less than 1e-6.)
+// means differ significantly that share their first two digits. (Interpolating the thresholds moves p by less than
+// 1e-6.)
 
 #include <algorithm>
 #include <cmath>

@@ -148,8 +148,9 @@ TEST_F(Vectors, TheLinearTestFitsLinearDensities) {
     EXPECT_NEAR(test_tally(field, inner).radius2 / field.first_radius2(), 0.5, 1e-6);
 }
 
-// Tallies half as steep again as any density can be: the fit stops at |k| = 1 / pi, where the density is zero on the rim.
-// With a factor too large by 2^(13/6), as it is printed, the clamp would not act and the statistic would be smaller.
+// Tallies half as steep again as any density can be: the fit stops at |k| = 1 / pi, where the density is zero on the
+// rim. With a factor too large by 2^(13/6), as it is printed, the clamp would not act and the statistic would be
+// smaller.
 TEST_F(Vectors, TheLinearTestKeepsDensitiesPositive) {
     SyntheticField field = pixel("cppm-lf");
     // Towards the centre of the first sector, so that the direction of the fit is exact by symmetry.

@@ -27,8 +27,8 @@ struct TwoWays {
 };
 TwoWays render_two_ways(const Scene& scene, Settings settings, std::uint32_t samples, std::uint32_t seeds);
 
-/// The same, the photons' pictures extrapolated to a radius of 0: twice a picture with four times the photons, and so half
-/// the radii, less one with those of the settings. The bias at edges is linear in the radius, most of it cancels.
+/// The same, the photons' pictures extrapolated to a radius of 0: twice a picture with four times the photons, and so
+/// half the radii, less one with those of the settings. The bias at edges is linear in the radius, most of it cancels.
 TwoWays render_two_ways_extrapolated(const Scene& scene, Settings settings, std::uint32_t samples, std::uint32_t seeds);
 
 struct BlockSettings {

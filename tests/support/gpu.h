@@ -20,7 +20,8 @@ namespace vkcppm::test {
 /// The one device of a test program, with synchronization validation.
 Device& device();
 
-/// The same without the validation layer, whose bookkeeping takes longer than tiny kernels: for runs of many iterations.
+/// The same without the validation layer, whose bookkeeping takes longer than tiny kernels: for runs of many
+/// iterations.
 Device& plain_device();
 
 /// Every test of a kernel: a message of the validation layer during the test fails it.

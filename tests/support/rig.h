@@ -52,8 +52,8 @@ struct Rig {
     Integrator integrator;
 };
 
-/// Small discs and large ones, which stay as they are. Before iteration 1, so that the grid of iteration 2 is planned for
-/// them and has several levels.
+/// Small discs and large ones, which stay as they are. Before iteration 1, so that the grid of iteration 2 is planned
+/// for them and has several levels.
 inline void set_two_radii(Rig& rig) {
     auto states = rig.all<gpu::PixelState>(BIND_PIXELS);
     states.resize(rig.pixels());

@@ -53,7 +53,8 @@ std::vector<std::string> violations(const std::string& name, const std::string& 
         const std::string header = (*it)[2];
         const std::string told = name + " includes " + header;
         const std::string owner = header.substr(0, header.find('/'));
-        // What is embedded, SPIR-V and texts, has no folder; everything else of the project is named from host/ or shaders/.
+        // What is embedded, SPIR-V and texts, has no folder; everything else of the project is named from host/ or
+        // shaders/.
         if ((*it)[1] == "\"" && !header.ends_with(".inc") && !allowed.at(folder).contains(owner)) {
             found.push_back(told + ": '" + folder + "' may not look into '" + owner + "'");
         }
