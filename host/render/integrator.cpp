@@ -53,8 +53,8 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     : device_(device),
       bindings_(device),
       commands_(device, bindings_, timed_launches),
-      buffers_(device, bindings_, scene),
-      forms_(forms.empty() ? forms_for(device.info()) : std::move(forms)) {
+      buffers_(device, bindings_, scene) {
+    if (forms.empty()) forms = forms_for(device.info());
     const EstimatorRow& estimator = find_estimator(settings.estimator);
     const std::uint32_t features = bits_of(scene.features) | bits_of(features_of(settings));
     scale_ = scene.frame.scale;
@@ -86,7 +86,7 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     params_.most_levels = std::uint32_t(std::clamp<std::uint64_t>(
         sorted_bytes / (sizeof(gpu::Photon) * usual_photons * settings.photons), 1, GRID_LEVELS));
     params_.sort_lanes = std::bit_ceil(std::clamp(settings.photons / 128, 64u, 4096u));
-    params_.scan_blocks = std::clamp(params_.cells / 256, forms_.front().group, 4096u);
+    params_.scan_blocks = std::clamp(params_.cells / 256, forms.front().group, 4096u);
     const auto key_bits = std::uint32_t(std::countr_zero(params_.cells));
     digits_ = (key_bits + 7) / 8;
     digit_bits_ = (key_bits + digits_ - 1) / digits_;
@@ -137,7 +137,7 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     for (const KernelModule& module : kernel_modules()) {
         if (module.name == "path") continue;  // the path tracer's
         names.emplace_back(module.name);
-        choices_.emplace(names.back(), forms_of(names.back(), forms_));
+        choices_.emplace(names.back(), forms_of(names.back(), forms));
         passes_.push_back({names.back(), 0, 0.0});
     }
     compile(names);

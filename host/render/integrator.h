@@ -115,7 +115,6 @@ private:
     std::map<std::string, KernelChoice> choices_;
     std::map<Pass, std::uint32_t> rounds_;
     std::vector<PassReport> passes_;
-    std::vector<KernelForm> forms_;        // to choose from
     double scale_ = 1.0;                   // frame units a metre
     std::uint64_t pixels_ = 0;
     std::uint32_t digit_bits_ = 7;

@@ -1,8 +1,8 @@
 // APPM: Kaplanyan and Dachsbacher 2013, in a form whose units agree. The radius balances variance and squared bias:
 // r = [2 R V / (N kappa^2 Delta^2)]^(1/6), V the second moment of the contribution's luminance per area and path, Delta
 // the Laplacian of the radiance's luminance, N paths so far. Both are means over iterations; Delta by the five-point
-// stencil of the kernel with the pilot bandwidth r_d; luminances times params.flux_unit. Uses K(t) = 7/(2 pi) (1 - 10
-// t^3 + 15 t^4 - 6 t^5).
+// stencil of the kernel with the pilot bandwidth r_d; luminances times params.flux_unit.
+// Uses K(t) = 7/(2 pi) (1 - 10 t^3 + 15 t^4 - 6 t^5).
 
 const float APPM_KAPPA = 5.0 / 48.0;              // int x_1^2 K
 const float APPM_ROUGHNESS = 287.0 / (132.0 * PI);  // int K^2
