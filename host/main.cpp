@@ -1,5 +1,3 @@
 #include "app/run.h"
 
-int main(int argc, char** argv) {
-    return vkcppm::run(argc, argv);
-}
+int main(int argc, char** argv) { return vkcppm::run(argc, argv); }

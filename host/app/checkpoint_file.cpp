@@ -26,10 +26,10 @@ namespace {
 constexpr std::string_view magic = "vkcppmck";
 constexpr std::uint64_t format = 3;  // of the header and of Integrator::save(): raised where either changes
 constexpr std::uint64_t fixed_bytes = magic.size() + 3 * sizeof(std::uint64_t);
-constexpr std::uint64_t most_header_bytes = 256u << 20;       // a million points of a curve
-constexpr std::uint64_t most_state_bytes_per_pixel = 1024;    // no estimator keeps so much
-constexpr std::uint64_t most_other_state_bytes = 4096;        // grid and histogram, padding of buffers
-constexpr std::size_t chunk_bytes = 1u << 20;                 // read at once for the checksum
+constexpr std::uint64_t most_header_bytes = 256u << 20;     // a million points of a curve
+constexpr std::uint64_t most_state_bytes_per_pixel = 1024;  // no estimator keeps so much
+constexpr std::uint64_t most_other_state_bytes = 4096;      // grid and histogram, padding of buffers
+constexpr std::size_t chunk_bytes = 1u << 20;               // read at once for the checksum
 
 static_assert(std::endian::native == std::endian::little, "files are little-endian");
 
@@ -245,9 +245,7 @@ private:
 
 }  // namespace
 
-std::uint64_t hash_of(const Image& image) {
-    return fnv1a_of(std::span<const glm::vec3>(image.rgb));
-}
+std::uint64_t hash_of(const Image& image) { return fnv1a_of(std::span<const glm::vec3>(image.rgb)); }
 
 Identity identity_of(const SceneOptions& options, const Scene& scene, const Settings& settings,
                      const Image* reference) {
@@ -258,9 +256,7 @@ Identity identity_of(const SceneOptions& options, const Scene& scene, const Sett
     json["scene_hash"] = of_scene["hash"];
     json["thin_glass"] = of_scene["thin_glass"];
     json["aovs"] = settings.aovs;
-    if (reference) {
-        json["reference_hash"] = hash_text(hash_of(*reference));
-    }
+    if (reference) json["reference_hash"] = hash_text(hash_of(*reference));
     for (const auto& [name, value] : json.items()) {
         identity.emplace_back(name, value.is_string() ? value.get<std::string>() : json_text(value));
     }

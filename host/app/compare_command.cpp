@@ -41,9 +41,10 @@ void execute(const CompareOptions& options) {
     const Image image = read_exr(options.image);
     const Comparison comparison = compare(image, read_exr(options.reference));
     if (comparison.pixels < image.extent.pixels()) {
-        print_message(fmt::format("warning: {} pixels of the image and {} of the reference are NaN or infinite; "
-                                  "they are left out",
-                                  comparison.image_non_finite, comparison.reference_non_finite));
+        print_message(
+            fmt::format("warning: {} pixels of the image and {} of the reference are NaN or infinite; "
+                        "they are left out",
+                        comparison.image_non_finite, comparison.reference_non_finite));
     }
     print_result(options.json ? json_text(options, comparison) : plain_text(comparison));
 }

@@ -18,15 +18,14 @@ void print_result(std::string_view text) {
 
 void print_message(std::string_view message) {
     std::string line(message);
-    std::replace_if(line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+    std::replace_if(
+        line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
     line += '\n';
     std::fputs(line.c_str(), stderr);
 }
 
 void print_warnings(std::span<const std::string> warnings) {
-    for (const std::string& warning : warnings) {
-        print_message("warning: " + warning);
-    }
+    for (const std::string& warning : warnings) print_message("warning: " + warning);
 }
 
 }  // namespace vkcppm

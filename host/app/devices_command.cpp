@@ -27,9 +27,7 @@ std::string json_text(const std::vector<DeviceInfo>& devices) {
 }
 
 std::string plain_text(const std::vector<DeviceInfo>& devices) {
-    if (devices.empty()) {
-        return "no Vulkan devices\n";
-    }
+    if (devices.empty()) return "no Vulkan devices\n";
     std::string text;
     for (const DeviceInfo& device : devices) {
         text += fmt::format("{}: {} ({})\n   {}, Vulkan {}, {:.1f} GiB\n   uuid:{}\n", device.index, device.name,

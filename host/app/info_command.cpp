@@ -42,26 +42,20 @@ std::optional<Bounds> bounds_of(const Scene& scene) {
 
 std::vector<std::size_t> triangles_by_material(const Scene& scene) {
     std::vector<std::size_t> counts(scene.materials.size());
-    for (const Triangle& triangle : scene.triangles) {
-        ++counts[triangle.material];
-    }
+    for (const Triangle& triangle : scene.triangles) ++counts[triangle.material];
     return counts;
 }
 
 /// What the vertices carry, by glTF's names.
 std::vector<std::string> vertex_attributes(const Scene& scene) {
     std::vector<std::string> names{"POSITION", "NORMAL"};
-    if (!scene.tangents.empty()) {
-        names.push_back("TANGENT");
-    }
+    if (!scene.tangents.empty()) names.push_back("TANGENT");
     for (std::size_t set = 0; set < scene.uv.size(); ++set) {
         if (!scene.uv[set].empty()) {
             names.push_back(fmt::format("TEXCOORD_{}", set));
         }
     }
-    if (!scene.colors.empty()) {
-        names.push_back("COLOR_0");
-    }
+    if (!scene.colors.empty()) names.push_back("COLOR_0");
     return names;
 }
 
@@ -71,11 +65,9 @@ glm::dvec3 mean_radiance(const Environment& environment) {
     glm::dvec3 mean(0.0);
     for (std::uint32_t y = 0; y < height; ++y) {
         glm::dvec3 row(0.0);
-        for (std::uint32_t x = 0; x < width; ++x) {
-            row += glm::dvec3(environment.radiance[std::size_t(y) * width + x]);
-        }
-        const double of_sphere = 0.5 * (std::cos(std::numbers::pi * y / height) -
-                                        std::cos(std::numbers::pi * (y + 1.0) / height));
+        for (std::uint32_t x = 0; x < width; ++x) row += glm::dvec3(environment.radiance[std::size_t(y) * width + x]);
+        const double of_sphere =
+            0.5 * (std::cos(std::numbers::pi * y / height) - std::cos(std::numbers::pi * (y + 1.0) / height));
         mean += of_sphere / width * row;
     }
     return mean;
@@ -83,24 +75,18 @@ glm::dvec3 mean_radiance(const Environment& environment) {
 
 const char* kind_name(PunctualLight::Kind kind) {
     switch (kind) {
-    case PunctualLight::Kind::point: return "point";
-    case PunctualLight::Kind::spot: return "spot";
-    case PunctualLight::Kind::directional: return "directional";
+        case PunctualLight::Kind::point: return "point";
+        case PunctualLight::Kind::spot: return "spot";
+        case PunctualLight::Kind::directional: return "directional";
     }
     return "";
 }
 
-const char* unit(PunctualLight::Kind kind) {
-    return kind == PunctualLight::Kind::directional ? "W/m^2" : "W/sr";
-}
+const char* unit(PunctualLight::Kind kind) { return kind == PunctualLight::Kind::directional ? "W/m^2" : "W/sr"; }
 
-double degrees(double radians) {
-    return radians * 180.0 / std::numbers::pi;
-}
+double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
-template <typename Vector> Json json_of(const Vector& v) {
-    return {v[0], v[1], v[2]};
-}
+template <typename Vector> Json json_of(const Vector& v) { return {v[0], v[1], v[2]}; }
 
 template <typename Vector> std::string text_of(const Vector& v) {
     return fmt::format("({:g}, {:g}, {:g})", v[0], v[1], v[2]);
@@ -108,12 +94,8 @@ template <typename Vector> std::string text_of(const Vector& v) {
 
 Json json_of(const PunctualLight& light) {
     Json json{{"name", light.name}, {"kind", kind_name(light.kind)}, {"intensity", json_of(light.intensity)}};
-    if (light.kind != PunctualLight::Kind::directional) {
-        json["position"] = json_of(light.position);
-    }
-    if (light.kind != PunctualLight::Kind::point) {
-        json["direction"] = json_of(light.direction);
-    }
+    if (light.kind != PunctualLight::Kind::directional) json["position"] = json_of(light.position);
+    if (light.kind != PunctualLight::Kind::point) json["direction"] = json_of(light.direction);
     if (light.kind == PunctualLight::Kind::spot) {
         json["inner_cone_degrees"] = degrees(light.inner_cone);
         json["outer_cone_degrees"] = degrees(light.outer_cone);
@@ -122,14 +104,10 @@ Json json_of(const PunctualLight& light) {
 }
 
 std::string text_of(const PunctualLight& light) {
-    std::string text = fmt::format("  {} '{}': {} {}", kind_name(light.kind), light.name, text_of(light.intensity),
-                                   unit(light.kind));
-    if (light.kind != PunctualLight::Kind::directional) {
-        text += " at " + text_of(light.position);
-    }
-    if (light.kind != PunctualLight::Kind::point) {
-        text += " towards " + text_of(light.direction);
-    }
+    std::string text =
+        fmt::format("  {} '{}': {} {}", kind_name(light.kind), light.name, text_of(light.intensity), unit(light.kind));
+    if (light.kind != PunctualLight::Kind::directional) text += " at " + text_of(light.position);
+    if (light.kind != PunctualLight::Kind::point) text += " towards " + text_of(light.direction);
     if (light.kind == PunctualLight::Kind::spot) {
         text += fmt::format(", cone {:g} to {:g} degrees", degrees(light.inner_cone), degrees(light.outer_cone));
     }
@@ -166,9 +144,7 @@ std::string json_text(const Scene& scene, const std::vector<Feature>& features) 
         json["images"].push_back({{"name", image.name}, {"width", image.size.width}, {"height", image.size.height}});
     }
     json["lights"] = Json::array();
-    for (const PunctualLight& light : scene.lights) {
-        json["lights"].push_back(json_of(light));
-    }
+    for (const PunctualLight& light : scene.lights) json["lights"].push_back(json_of(light));
     json["environment"] = scene.environment ? json_of(*scene.environment) : Json();
     json["cameras"] = Json::array();
     for (const Camera& camera : scene.cameras) {
@@ -212,9 +188,7 @@ std::string plain_text(const Scene& scene, const std::vector<Feature>& features)
                        text_of(mean_radiance(*scene.environment)));
     }
     fmt::format_to(out, "{} punctual lights\n", scene.lights.size());
-    for (const PunctualLight& light : scene.lights) {
-        text += text_of(light);
-    }
+    for (const PunctualLight& light : scene.lights) text += text_of(light);
     fmt::format_to(out, "{} cameras\n", scene.cameras.size());
     for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
         const Camera& camera = scene.cameras[i];

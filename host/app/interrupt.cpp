@@ -22,8 +22,6 @@ void catch_interrupts() {
     std::signal(SIGTERM, on_signal);
 }
 
-bool interrupted() {
-    return signalled;
-}
+bool interrupted() { return signalled; }
 
 }  // namespace vkcppm

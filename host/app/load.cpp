@@ -15,12 +15,8 @@ Scene load_scene(const SceneOptions& options) {
         Image image = read_environment(*options.environment, scene.hash);
         scene.environment = Environment{image.extent, std::move(image.rgb)};
     }
-    if (options.thin_glass == ThinGlass::solid) {
-        make_glass_solid(scene);
-    }
-    for (std::string& line : diagnose(scene)) {
-        scene.warnings.push_back(std::move(line));
-    }
+    if (options.thin_glass == ThinGlass::solid) make_glass_solid(scene);
+    for (std::string& line : diagnose(scene)) scene.warnings.push_back(std::move(line));
     return scene;
 }
 

@@ -6,9 +6,7 @@
 namespace vkcppm {
 
 void add_measures(nlohmann::ordered_json& json, const Comparison& comparison) {
-    for (const Metric& metric : metrics()) {
-        json[std::string(metric.name)] = metric.of(comparison);
-    }
+    for (const Metric& metric : metrics()) json[std::string(metric.name)] = metric.of(comparison);
 }
 
 nlohmann::ordered_json curve_json(const Curve& curve) {

@@ -21,7 +21,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-constexpr double race_seconds = 60.0;  // of each entrant with each seed, where nothing else bounds them
+constexpr double race_seconds = 60.0;        // of each entrant with each seed, where nothing else bounds them
 constexpr std::uint32_t most_seeds = 10000;  // of a race: more is taken for a slip
 
 constexpr const char* footer = R"(Exit codes:
@@ -35,9 +35,7 @@ constexpr const char* footer = R"(Exit codes:
 /// Reads the number at the start of `text` and removes it; false where there is none or it does not fit.
 template <typename Number> bool take_number(std::string_view& text, Number& number) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc()) {
-        return false;
-    }
+    if (error != std::errc()) return false;
     text.remove_prefix(std::size_t(end - text.data()));
     return true;
 }
@@ -54,9 +52,7 @@ std::uint32_t parse_whole(const std::string& option, const std::string& text) {
 double parse_real(const std::string& option, const std::string& text) {
     std::string_view rest = text;
     double number = 0.0;
-    if (!take_number(rest, number) || !rest.empty() || !std::isfinite(number)) {
-        refuse(option, text, "a finite number");
-    }
+    if (!take_number(rest, number) || !rest.empty() || !std::isfinite(number)) refuse(option, text, "a finite number");
     return number;
 }
 
@@ -80,9 +76,7 @@ Extent parse_size(const std::string& option, const std::string& text) {
     std::string_view rest = text;
     Extent size;
     const bool width = take_number(rest, size.width) && rest.starts_with('x');
-    if (width) {
-        rest.remove_prefix(1);
-    }
+    if (width) rest.remove_prefix(1);
     if (!width || !take_number(rest, size.height) || !rest.empty()) {
         refuse(option, text, "WIDTHxHEIGHT in pixels, such as 512x384");
     }
@@ -90,9 +84,7 @@ Extent parse_size(const std::string& option, const std::string& text) {
 }
 
 ThinGlass parse_thin_glass(const std::string& option, const std::string& text) {
-    if (text != "thin" && text != "solid") {
-        refuse(option, text, "thin or solid");
-    }
+    if (text != "thin" && text != "solid") refuse(option, text, "thin or solid");
     return text == "solid" ? ThinGlass::solid : ThinGlass::thin;
 }
 
@@ -107,18 +99,14 @@ double parse_seconds(const std::string& option, const std::string& text) {
                              : unit == "h"               ? 3600.0
                                                          : 0.0;
         const double seconds = number * scale;
-        if (std::isfinite(seconds) && seconds > 0.0) {
-            return seconds;
-        }
+        if (std::isfinite(seconds) && seconds > 0.0) return seconds;
     }
     refuse(option, text, "a time greater than 0, such as 90, 90s, 2m, 1.5h or 500ms");
 }
 
 StopAt parse_stop_at(const std::string& option, const std::string& text) {
     const std::size_t equals = text.find('=');
-    if (equals == std::string::npos) {
-        refuse(option, text, "METRIC=VALUE, such as relmse_trimmed=0.0035");
-    }
+    if (equals == std::string::npos) refuse(option, text, "METRIC=VALUE, such as relmse_trimmed=0.0035");
     StopAt result{&find_metric(option, text.substr(0, equals))};
     std::string_view rest = std::string_view(text).substr(equals + 1);
     if (!take_number(rest, result.value) || !rest.empty() || !std::isfinite(result.value) || !(result.value > 0.0)) {
@@ -131,8 +119,9 @@ StopAt parse_stop_at(const std::string& option, const std::string& text) {
 template <typename Target, typename Value>
 CLI::Option* add(CLI::App& app, const std::string& name, const char* type, Target& target,
                  Value (*parse)(const std::string& option, const std::string& text), const std::string& help) {
-    return app.add_option_function<std::string>(
-                  name, [&target, name, parse](const std::string& text) { target = parse(name, text); }, help)
+    return app
+        .add_option_function<std::string>(
+            name, [&target, name, parse](const std::string& text) { target = parse(name, text); }, help)
         ->type_name(type);
 }
 
@@ -208,10 +197,10 @@ void add_parameters(CLI::App& app, Settings& settings) {
 void add_device(CLI::App& app, Device::Options& device) {
     add(app, "--device", "NAME|INDEX|uuid:...", device.select, parse_name,
         "Vulkan device; vkcppm devices lists them (default: the fastest)");
-    app.add_flag("--validate", device.validate,
-                 "Load the validation layer; its messages make the exit code 70");
-    app.add_flag_callback("--no-cache", [&device] { device.cache = false; },
-                          "Neither read nor write compiled kernels in $XDG_CACHE_HOME/vkcppm");
+    app.add_flag("--validate", device.validate, "Load the validation layer; its messages make the exit code 70");
+    app.add_flag_callback(
+        "--no-cache", [&device] { device.cache = false; },
+        "Neither read nor write compiled kernels in $XDG_CACHE_HOME/vkcppm");
 }
 
 Options parse_render(const Words& words) {
@@ -249,7 +238,8 @@ Options parse_render(const Words& words) {
         ->type_name("REF.exr");
     add(app, "--stop-at", "METRIC=VALUE", options.stop_at, parse_stop_at,
         "Stop after the first iteration after which the error is at most this, such as relmse_trimmed=0.0035;\n"
-        "one of " + metric_names())
+        "one of " +
+            metric_names())
         ->needs("--reference");
     app.add_option(
            "--checkpoint", options.checkpoint,
@@ -281,9 +271,7 @@ Options parse_render(const Words& words) {
         return TextOptions{text};
     }
     options.output = output ? *output : std::filesystem::path(options.scene.file.stem().string() + ".exr");
-    if (!options.checkpoint) {
-        options.checkpoint = options.resume;
-    }
+    if (!options.checkpoint) options.checkpoint = options.resume;
     if (!options.checkpoint && app.count("--checkpoint-every") > 0) {
         throw Error(ExitCode::usage, "--checkpoint-every needs --checkpoint or --resume");
     }
@@ -299,24 +287,21 @@ Options parse_render(const Words& words) {
 Entrant parse_entrant(const std::string& text, const Settings& common) {
     std::vector<std::string> parts;
     std::istringstream stream(text);
-    for (std::string part; std::getline(stream, part, ':');) {
-        parts.push_back(part);
-    }
+    for (std::string part; std::getline(stream, part, ':');) parts.push_back(part);
     Entrant entrant{text, common};
     entrant.settings.estimator = find_estimator(parts.empty() ? "" : parts.front()).name;
     CLI::App app("", "--estimators");
     add_parameters(app, entrant.settings);
     app.set_help_flag();
     Words names, words;
-    for (const CLI::Option* option : app.get_options()) {
-        names.push_back(option->get_name().substr(2));
-    }
+    for (const CLI::Option* option : app.get_options()) names.push_back(option->get_name().substr(2));
     for (std::size_t i = 1; i < parts.size(); ++i) {
         const std::size_t equals = parts[i].find('=');
         const std::string name = parts[i].substr(0, equals);
         if (equals == std::string::npos || std::ranges::find(names, name) == names.end()) {
-            refuse("--estimators", text, fmt::format("NAME:PARAMETER=VALUE:... with parameters of {}: '{}'",
-                                                     fmt::join(names, ", "), parts[i]));
+            refuse(
+                "--estimators", text,
+                fmt::format("NAME:PARAMETER=VALUE:... with parameters of {}: '{}'", fmt::join(names, ", "), parts[i]));
         }
         words.insert(words.end(), {"--" + name, parts[i].substr(equals + 1)});
     }
@@ -331,13 +316,9 @@ Entrant parse_entrant(const std::string& text, const Settings& common) {
 /// A word as a shell takes it.
 std::string quoted(const std::string& word) {
     const char* plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=.,:/@%";
-    if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) {
-        return word;
-    }
+    if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
     std::string text = "'";
-    for (const char c : word) {
-        text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    }
+    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
     return text + "'";
 }
 
@@ -348,9 +329,10 @@ Options parse_race(const Words& words) {
     std::optional<std::uint32_t> iterations;
     std::string text;
 
-    CLI::App app("Renders a scene by several estimators side by side and compares their errors: against iterations,\n"
-                 "against time, at every pixel. Open DIR/index.html in a browser.",
-                 "vkcppm race");
+    CLI::App app(
+        "Renders a scene by several estimators side by side and compares their errors: against iterations,\n"
+        "against time, at every pixel. Open DIR/index.html in a browser.",
+        "vkcppm race");
     app.footer(footer);
     add_scene(app, options.scene);
     app.add_option("-o", options.folder, "Folder for the page, curves and pictures; made where there is none")
@@ -359,7 +341,8 @@ Options parse_race(const Words& words) {
     app.add_option("--estimators", estimators,
                    fmt::format("Who takes part, parameters behind a colon: cppm,cppm:beta=1.5:k=0.7,sppm\n"
                                "(default: {}). The same seed means the same photon paths for all, and the same\n"
-                               "starting radii unless they differ in knn", estimators))
+                               "starting radii unless they differ in knn",
+                               estimators))
         ->type_name("NAME[:PARAMETER=VALUE]...,...");
     add(app, "--time", "TIME", settings.seconds, parse_seconds,
         fmt::format("What each gets for each seed, on a clock that runs during its passes alone (default: {:g}s)",
@@ -387,18 +370,14 @@ Options parse_race(const Words& words) {
     if (options.race.seeds == 0 || options.race.seeds > most_seeds) {
         refuse("--seeds", std::to_string(options.race.seeds), fmt::format("a number from 1 to {}", most_seeds));
     }
-    if (!iterations && !settings.seconds) {
-        settings.seconds = race_seconds;
-    }
+    if (!iterations && !settings.seconds) settings.seconds = race_seconds;
     settings.iterations = iterations.value_or(unbounded_iterations);
     std::istringstream stream(estimators + ",");
     for (std::string entrant; std::getline(stream, entrant, ',');) {
         options.race.entrants.push_back(parse_entrant(entrant, settings));
     }
     options.command = "vkcppm race";
-    for (const std::string& word : words) {
-        options.command += " " + quoted(word);
-    }
+    for (const std::string& word : words) options.command += " " + quoted(word);
     return options;
 }
 
@@ -481,21 +460,11 @@ Options parse_options(int argc, const char* const* argv) {
     const Words words(argv + std::min(argc, 1), argv + argc);
     const std::string command = words.empty() ? "" : words.front();
     const auto arguments = [&] { return Words(words.begin() + 1, words.end()); };
-    if (command == "race") {
-        return parse_race(arguments());
-    }
-    if (command == "reference") {
-        return parse_reference(arguments());
-    }
-    if (command == "compare") {
-        return parse_compare(arguments());
-    }
-    if (command == "info") {
-        return parse_info(arguments());
-    }
-    if (command == "devices") {
-        return parse_devices(arguments());
-    }
+    if (command == "race") return parse_race(arguments());
+    if (command == "reference") return parse_reference(arguments());
+    if (command == "compare") return parse_compare(arguments());
+    if (command == "info") return parse_info(arguments());
+    if (command == "devices") return parse_devices(arguments());
     return parse_render(words);
 }
 

@@ -34,17 +34,17 @@ struct StopAt {
 /// vkcppm SCENE ...
 struct RenderOptions {
     SceneOptions scene;
-    Settings settings;                          // ranges unchecked: resolve_settings does that
-    std::filesystem::path output;               // EXR
+    Settings settings;             // ranges unchecked: resolve_settings does that
+    std::filesystem::path output;  // EXR
     std::optional<std::filesystem::path> png;
-    double exposure = 0.0;                      // stops, for the PNG
-    std::optional<std::filesystem::path> stats; // JSON
-    std::optional<std::filesystem::path> reference;  // EXR that the render is measured against
-    std::optional<StopAt> stop_at;              // only with a reference
+    double exposure = 0.0;                            // stops, for the PNG
+    std::optional<std::filesystem::path> stats;       // JSON
+    std::optional<std::filesystem::path> reference;   // EXR that the render is measured against
+    std::optional<StopAt> stop_at;                    // only with a reference
     std::optional<std::filesystem::path> resume;      // checkpoint to go on from
     std::optional<std::filesystem::path> checkpoint;  // where checkpoints go: `resume` where no other is named
-    double checkpoint_every = 60.0;             // s
-    bool hash = false;                          // print the hash of every pass
+    double checkpoint_every = 60.0;                   // s
+    bool hash = false;                                // print the hash of every pass
     Device::Options device;
     bool quiet = false;
     bool verbose = false;
@@ -53,10 +53,10 @@ struct RenderOptions {
 /// vkcppm reference SCENE ...
 struct ReferenceOptions {
     SceneOptions scene;
-    ReferenceSettings settings;                 // ranges unchecked: make_reference does that
-    std::filesystem::path output;               // EXR
-    bool half = false;                          // half floats
-    std::optional<std::filesystem::path> stats; // JSON
+    ReferenceSettings settings;                  // ranges unchecked: make_reference does that
+    std::filesystem::path output;                // EXR
+    bool half = false;                           // half floats
+    std::optional<std::filesystem::path> stats;  // JSON
     Device::Options device;
     bool quiet = false;
     bool json = false;
@@ -72,14 +72,14 @@ struct CompareOptions {
 /// vkcppm race SCENE
 struct RaceOptions {
     SceneOptions scene;
-    RaceSettings race;                                  // ranges unchecked: resolve_race does that
-    std::optional<std::filesystem::path> reference;     // EXR; by default references/NAME.exr beside the scene
-    std::optional<double> make_reference;               // s: one is made for the race, in at most that time
-    std::filesystem::path folder;                       // of all that is written
-    double exposure = 0.0;                              // stops, for the pictures
+    RaceSettings race;                               // ranges unchecked: resolve_race does that
+    std::optional<std::filesystem::path> reference;  // EXR; by default references/NAME.exr beside the scene
+    std::optional<double> make_reference;            // s: one is made for the race, in at most that time
+    std::filesystem::path folder;                    // of all that is written
+    double exposure = 0.0;                           // stops, for the pictures
     Device::Options device;
     bool quiet = false;
-    std::string command;                                // this command line, to be given to a shell again
+    std::string command;  // this command line, to be given to a shell again
 };
 
 /// vkcppm info SCENE

@@ -13,9 +13,7 @@ constexpr double plain_interval = 10.0;    // s
 
 /// ", relmse 0.0123", and after how many iterations where there have been more since.
 std::string error_text(const Progress& progress) {
-    if (!progress.error) {
-        return "";
-    }
+    if (!progress.error) return "";
     const LatestError& error = *progress.error;
     std::string text = fmt::format(", {} {:.3g}", error.metric->name, error.value);
     return error.iterations == progress.iterations_done ? text : text + fmt::format(" after {}", error.iterations);
@@ -51,13 +49,10 @@ std::string progress_text(const Progress& progress, std::optional<double> time_l
 }
 
 ProgressLine::ProgressLine(std::FILE* stream, bool terminal, std::optional<double> time_limit)
-    : stream_(stream), terminal_(terminal), time_limit_(time_limit) {
-}
+    : stream_(stream), terminal_(terminal), time_limit_(time_limit) {}
 
 ProgressLine::~ProgressLine() {
-    if (open_) {
-        std::fputs("\n", stream_);
-    }
+    if (open_) std::fputs("\n", stream_);
 }
 
 void ProgressLine::update(const Progress& progress) {
@@ -66,9 +61,7 @@ void ProgressLine::update(const Progress& progress) {
 
 void ProgressLine::update(double wall_seconds, const std::string& text) {
     const double interval = terminal_ ? terminal_interval : plain_interval;
-    if (last_ && wall_seconds - *last_ < interval) {
-        return;
-    }
+    if (last_ && wall_seconds - *last_ < interval) return;
     last_ = wall_seconds;
     write(text);
     open_ = terminal_;

@@ -40,7 +40,8 @@ fs::path find_reference(const RaceOptions& options) {
     if (!fs::exists(file)) {
         throw Error(ExitCode::usage,
                     fmt::format("nothing to measure against: there is no {}; name a picture of {} by --reference, or "
-                                "let --make-reference make one", file.string(), scene.string()));
+                                "let --make-reference make one",
+                                file.string(), scene.string()));
     }
     return file;
 }
@@ -104,9 +105,9 @@ Image make_race_reference(const RaceOptions& options, RaceInput& input, const Ra
     ProgressLine line(stderr, ::isatty(STDERR_FILENO) == 1, std::nullopt);
     const auto refine = [&](const ReferenceProgress& progress) {
         if (!options.quiet) {
-            line.update(progress.wall_seconds, fmt::format("reference: {} of {}, relMSE about {:.2g}",
-                                                           duration_text(progress.wall_seconds),
-                                                           duration_text(*options.make_reference), progress.relmse));
+            line.update(progress.wall_seconds,
+                        fmt::format("reference: {} of {}, relMSE about {:.2g}", duration_text(progress.wall_seconds),
+                                    duration_text(*options.make_reference), progress.relmse));
         }
         return !interrupted();
     };

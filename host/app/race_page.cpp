@@ -57,17 +57,13 @@ Json pictures_json(const RacePictures& pictures) {
 /// JSON that may stand in a script element, which "</" would end and "<!--" would change.
 std::string script_text(const Json& json) {
     std::string text;
-    for (const char c : json_text(json)) {
-        text += c == '<' ? std::string("\\u003c") : std::string(1, c);
-    }
+    for (const char c : json_text(json)) text += c == '<' ? std::string("\\u003c") : std::string(1, c);
     return text;
 }
 
 std::string escaped(std::string_view text) {
     std::string html;
-    for (const char c : text) {
-        html += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
-    }
+    for (const char c : text) html += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
     return html;
 }
 

@@ -12,9 +12,16 @@ constexpr double difference_quantile = 0.99;
 constexpr double radius_tail = 0.005;
 
 /// Okabe and Ito 2008 without black and yellow, and others of Tol's schemes (SRON/EPS/TN/09-002).
-constexpr std::array<glm::u8vec3, 10> colours = {{{0, 114, 178}, {213, 94, 0}, {0, 158, 115}, {204, 121, 167},
-                                                  {230, 159, 0}, {86, 180, 233}, {153, 79, 190}, {153, 153, 51},
-                                                  {204, 51, 85}, {120, 130, 140}}};
+constexpr std::array<glm::u8vec3, 10> colours = {{{0, 114, 178},
+                                                  {213, 94, 0},
+                                                  {0, 158, 115},
+                                                  {204, 121, 167},
+                                                  {230, 159, 0},
+                                                  {86, 180, 233},
+                                                  {153, 79, 190},
+                                                  {153, 153, 51},
+                                                  {204, 51, 85},
+                                                  {120, 130, 140}}};
 constexpr glm::u8vec3 no_winner_colour{200, 200, 200};
 
 std::vector<float> absolute_difference(const Image& image, const Image& reference) {

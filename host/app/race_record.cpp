@@ -73,9 +73,7 @@ Json run_json(const Curve& curve, const Report& report, std::uint32_t seed) {
               {"rays", report.rays},
               {"pass_seconds", Json::object()},
               {"curve", curve_json(curve)}};
-    for (const PassReport& pass : report.passes) {
-        json["pass_seconds"][pass.name] = pass.device_seconds;
-    }
+    for (const PassReport& pass : report.passes) json["pass_seconds"][pass.name] = pass.device_seconds;
     return json;
 }
 

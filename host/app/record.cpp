@@ -15,9 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* name_of(ThinGlass thin_glass) {
-    return thin_glass == ThinGlass::solid ? "solid" : "thin";
-}
+const char* name_of(ThinGlass thin_glass) { return thin_glass == ThinGlass::solid ? "solid" : "thin"; }
 
 }  // namespace
 
@@ -31,18 +29,14 @@ Json settings_json(const Settings& settings) {
     Json json;
     json["estimator"] = settings.estimator;
     json["iterations"] = settings.iterations;
-    if (settings.seconds) {
-        json["time"] = *settings.seconds;
-    }
+    if (settings.seconds) json["time"] = *settings.seconds;
     json["photons"] = settings.photons;
     if (settings.size) {
         json["size"] = fmt::format("{}x{}", settings.size->width, settings.size->height);
     }
     json["camera"] = settings.camera;
     json["aperture"] = settings.aperture;
-    if (settings.focus_distance) {
-        json["focus_distance"] = *settings.focus_distance;
-    }
+    if (settings.focus_distance) json["focus_distance"] = *settings.focus_distance;
     json["seed"] = settings.seed;
     json["max_depth"] = settings.max_depth;
     json["knn"] = settings.knn;
@@ -66,9 +60,7 @@ Json scene_json(const SceneOptions& options, const Scene& scene) {
 ExrAttributes attributes_of(Json json, const SceneOptions& options, const Scene& scene, const Report& report) {
     json["scene"] = scene.file.filename().string();
     json["scene_hash"] = hash_text(scene.hash);
-    if (options.environment) {
-        json["environment"] = options.environment->filename().string();
-    }
+    if (options.environment) json["environment"] = options.environment->filename().string();
     json["thin_glass"] = name_of(options.thin_glass);
     json["device"] = report.device;
     json["driver"] = report.driver;
@@ -105,9 +97,7 @@ Json report_json(const Report& report) {
                       {"setup_seconds", report.setup_seconds},
                       {"peak_memory_bytes", report.peak_memory_bytes},
                       {"device_memory_bytes", report.device_memory_bytes}};
-    if (!report.memory.empty()) {
-        json["memory"] = Json::array();
-    }
+    if (!report.memory.empty()) json["memory"] = Json::array();
     for (const MemoryReport& row : report.memory) {
         json["memory"].push_back({{"of", row.of},
                                   {"count", row.count},
@@ -116,8 +106,7 @@ Json report_json(const Report& report) {
     }
     json["passes"] = Json::array();
     for (const PassReport& pass : report.passes) {
-        json["passes"].push_back(
-            {{"name", pass.name}, {"calls", pass.calls}, {"device_seconds", pass.device_seconds}});
+        json["passes"].push_back({{"name", pass.name}, {"calls", pass.calls}, {"device_seconds", pass.device_seconds}});
         if (!pass.form.empty()) json["passes"].back()["form"] = pass.form;
     }
     return json;
@@ -143,9 +132,7 @@ std::string stats_json(const RenderOptions& options, const Scene& scene, const R
 
 std::string stats_table(const Report& report) {
     double total = 0.0;
-    for (const PassReport& pass : report.passes) {
-        total += pass.device_seconds;
-    }
+    for (const PassReport& pass : report.passes) total += pass.device_seconds;
     std::string text = fmt::format("{:<20}{:>10}{:>14}{:>8}\n", "pass", "calls", "device s", "%");
     const auto out = std::back_inserter(text);
     for (const PassReport& pass : report.passes) {

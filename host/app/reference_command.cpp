@@ -49,9 +49,7 @@ void execute(const ReferenceOptions& options) {
     print_warnings(reference.warnings);
     write_exr(options.output, reference_channels(reference), reference_attributes(options, scene, reference),
               options.half ? ExrDepth::half : ExrDepth::full);
-    if (options.stats) {
-        write_file(*options.stats, reference_json(options, scene, reference, true));
-    }
+    if (options.stats) write_file(*options.stats, reference_json(options, scene, reference, true));
     print_result(options.json ? reference_json(options, scene, reference, false) : reference_summary(reference));
     check_validation(device);
 }

@@ -17,8 +17,8 @@ using Json = nlohmann::ordered_json;
 Json reference_settings_json(const ReferenceSettings& settings) {
     const Json render = settings_json(settings.render);
     Json json;
-    for (const char* name : {"time", "photons", "iterations", "size", "camera", "aperture", "focus_distance", "seed",
-                             "max_depth"}) {
+    for (const char* name :
+         {"time", "photons", "iterations", "size", "camera", "aperture", "focus_distance", "seed", "max_depth"}) {
         if (render.contains(name)) json[name] = render[name];
     }
     json["samples"] = settings.samples;
@@ -71,9 +71,7 @@ std::string reference_json(const ReferenceOptions& options, const Scene& scene, 
     json["scene"] = scene_json(options.scene, scene);
     json["settings"] = reference_settings_json(reference.settings);
     json["error"] = error_json(reference);
-    if (stats) {
-        json.update(report_json(reference.report));
-    }
+    if (stats) json.update(report_json(reference.report));
     return json_text(json, 2) + "\n";
 }
 

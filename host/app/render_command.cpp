@@ -32,9 +32,7 @@ namespace {
 
 /// What the render is measured against; absent without a reference. The picture will have that size.
 std::optional<Measuring> read_measuring(const RenderOptions& options, const Extent& size) {
-    if (!options.reference) {
-        return std::nullopt;
-    }
+    if (!options.reference) return std::nullopt;
     Measuring measuring{read_reference(*options.reference, size), &find_metric("--reference", "relmse"), std::nullopt};
     if (options.stop_at) {
         measuring.metric = options.stop_at->metric;
@@ -74,9 +72,7 @@ public:
 
     /// Throws where the last checkpoint could not be written.
     void require_kept() const {
-        if (failure_) {
-            throw *failure_;
-        }
+        if (failure_) throw *failure_;
     }
 
 private:
@@ -112,12 +108,13 @@ void print_hash(std::uint32_t iteration, std::string_view pass, std::uint64_t ha
 Rendering render_with_progress(const Scene& scene, const RenderOptions& options, const Measuring* measuring,
                                const Checkpointing& checkpointing, Device& device) {
     ProgressLine line(stderr, ::isatty(STDERR_FILENO) == 1, options.settings.seconds);
-    const Rendering rendering = render(scene, options.settings, device, [&](const Progress& progress) {
-        if (!options.quiet) {
-            line.update(progress);
-        }
-        return !interrupted();
-    }, measuring, checkpointing, options.hash ? print_hash : OnPassHash());
+    const Rendering rendering = render(
+        scene, options.settings, device,
+        [&](const Progress& progress) {
+            if (!options.quiet) line.update(progress);
+            return !interrupted();
+        },
+        measuring, checkpointing, options.hash ? print_hash : OnPassHash());
     if (!options.quiet) {
         const Report& report = rendering.report;
         Progress progress{report.iterations, rendering.settings.iterations, report.wall_seconds};
@@ -132,9 +129,7 @@ Rendering render_with_progress(const Scene& scene, const RenderOptions& options,
 
 void write_outputs(const RenderOptions& options, const Scene& scene, const Rendering& rendering) {
     const auto say_wrote = [&](const fs::path& file) {
-        if (!options.quiet) {
-            print_message("wrote " + file.string());
-        }
+        if (!options.quiet) print_message("wrote " + file.string());
     };
     ExrChannels channels = to_channels(rendering.image);
     channels.values.insert(rendering.aovs.begin(), rendering.aovs.end());
@@ -157,9 +152,7 @@ void write_outputs(const RenderOptions& options, const Scene& scene, const Rende
 
 void print_table(const Report& report) {
     std::istringstream table(stats_table(report));
-    for (std::string line; std::getline(table, line);) {
-        print_message(line);
-    }
+    for (std::string line; std::getline(table, line);) print_message(line);
 }
 
 }  // namespace
@@ -204,18 +197,12 @@ void execute(const RenderOptions& options) {
     if (options.hash) {
         print_result(fmt::format("picture {}\n", hash_text(hash_of(rendering.image))));
     }
-    if (options.stop_at) {
-        print_stop(*options.stop_at, rendering, options.quiet);
-    }
+    if (options.stop_at) print_stop(*options.stop_at, rendering, options.quiet);
     write_outputs(options, scene, rendering);
-    if (options.verbose) {
-        print_table(rendering.report);
-    }
+    if (options.verbose) print_table(rendering.report);
     if (keeper) {
         keeper->require_kept();
-        if (!options.quiet) {
-            print_message("wrote " + options.checkpoint->string());
-        }
+        if (!options.quiet) print_message("wrote " + options.checkpoint->string());
     }
     check_validation(device);
 }

@@ -3,8 +3,6 @@
 
 namespace vkcppm {
 
-void execute(const TextOptions& options) {
-    print_result(options.text);
-}
+void execute(const TextOptions& options) { print_result(options.text); }
 
 }  // namespace vkcppm

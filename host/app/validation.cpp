@@ -18,9 +18,7 @@ void require_validation(const Device::Options& options, const Device& device) {
 
 void check_validation(const Device& device) {
     const std::vector<std::string> messages = device.validation_messages();
-    for (const std::string& message : messages) {
-        print_message("validation: " + message);
-    }
+    for (const std::string& message : messages) print_message("validation: " + message);
     if (!messages.empty()) {
         throw Error(ExitCode::internal, fmt::format("{} messages of the validation layer", messages.size()));
     }

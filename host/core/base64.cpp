@@ -11,9 +11,7 @@ std::string encode_base64(std::string_view bytes) {
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
         const auto byte = [&](std::size_t k) { return i + k < bytes.size() ? std::uint8_t(bytes[i + k]) : 0u; };
         const std::uint32_t bits = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for (std::size_t k = 0; k < 4; ++k) {
-            text += i + k <= bytes.size() ? digits[bits >> (18 - 6 * k) & 63] : '=';
-        }
+        for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? digits[bits >> (18 - 6 * k) & 63] : '=';
     }
     return text;
 }

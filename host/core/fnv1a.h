@@ -15,15 +15,12 @@ inline constexpr std::uint64_t fnv1a_start = 0xcbf29ce484222325u;
 
 /// FNV-1a, 64 bits, continued from `hash` (Fowler, Noll, Vo; draft-eastlake-fnv).
 inline std::uint64_t fnv1a(std::span<const std::uint8_t> bytes, std::uint64_t hash = fnv1a_start) {
-    for (const std::uint8_t byte : bytes) {
-        hash = (hash ^ byte) * 0x100000001b3u;
-    }
+    for (const std::uint8_t byte : bytes) hash = (hash ^ byte) * 0x100000001b3u;
     return hash;
 }
 
 /// Of the bytes of values that have no padding.
-template <typename T>
-std::uint64_t fnv1a_of(std::span<const T> values, std::uint64_t hash = fnv1a_start) {
+template <typename T> std::uint64_t fnv1a_of(std::span<const T> values, std::uint64_t hash = fnv1a_start) {
     static_assert(std::is_trivially_copyable_v<T>);
     return fnv1a({reinterpret_cast<const std::uint8_t*>(values.data()), values.size_bytes()}, hash);
 }

@@ -32,9 +32,7 @@ Measure measure(std::vector<double> values) {
     return result;
 }
 
-std::string text(const Extent& extent) {
-    return std::to_string(extent.width) + "x" + std::to_string(extent.height);
-}
+std::string text(const Extent& extent) { return std::to_string(extent.width) + "x" + std::to_string(extent.height); }
 
 }  // namespace
 
@@ -48,17 +46,13 @@ Comparison compare(const Image& image, const Image& reference) {
     glm::dvec3 image_sum{0.0};
     glm::dvec3 reference_sum{0.0};
     std::vector<double> squares, relatives, ratios, levels;  // [pixels compared] means over the channels
-    for (std::vector<double>* values : {&squares, &relatives, &ratios, &levels}) {
-        values->reserve(image.rgb.size());
-    }
+    for (std::vector<double>* values : {&squares, &relatives, &ratios, &levels}) values->reserve(image.rgb.size());
     for (std::size_t i = 0; i < image.rgb.size(); ++i) {
         const bool image_finite = finite(image.rgb[i]);
         const bool reference_finite = finite(reference.rgb[i]);
         result.image_non_finite += !image_finite;
         result.reference_non_finite += !reference_finite;
-        if (!image_finite || !reference_finite) {
-            continue;
-        }
+        if (!image_finite || !reference_finite) continue;
         double square = 0.0, relative = 0.0, ratio = 0.0, level = 0.0;
         for (int c = 0; c < 3; ++c) {
             const double x = image.rgb[i][c];
@@ -107,17 +101,13 @@ std::span<const Metric> metrics() {
 
 std::string metric_names() {
     std::string names;
-    for (const Metric& metric : metrics()) {
-        names += (names.empty() ? "" : ", ") + std::string(metric.name);
-    }
+    for (const Metric& metric : metrics()) names += (names.empty() ? "" : ", ") + std::string(metric.name);
     return names;
 }
 
 const Metric& find_metric(std::string_view option, std::string_view name) {
     for (const Metric& metric : metrics()) {
-        if (metric.name == name) {
-            return metric;
-        }
+        if (metric.name == name) return metric;
     }
     throw Error(ExitCode::usage,
                 std::string(option) + ": '" + std::string(name) + "' is no metric: there are " + metric_names());

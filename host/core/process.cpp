@@ -17,9 +17,7 @@ double seconds(const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_
 
 }  // namespace
 
-double wall_now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double wall_now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 double cpu_now() {
     const rusage usage = usage_now();

@@ -32,9 +32,9 @@ Band band(Seeds seeds, const Metric& metric, Axis axis);
 
 /// How soon an estimator comes down to the error that a baseline has at its end, seed by seed.
 struct EqualError {
-    std::size_t reached = 0;           // seeds in which it comes down to it
-    std::optional<Estimate> at;        // iterations or seconds: geometric mean, where all seeds reach it
-    std::optional<Estimate> speedup;   // the baseline's own over them, the same
+    std::size_t reached = 0;          // seeds in which it comes down to it
+    std::optional<Estimate> at;       // iterations or seconds: geometric mean, where all seeds reach it
+    std::optional<Estimate> speedup;  // the baseline's own over them, the same
 };
 
 /// `seeds` and `baseline` [the same number]. By first_at_or_below.

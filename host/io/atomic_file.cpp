@@ -20,26 +20,18 @@ namespace {
     throw Error(ExitCode::cannot_write, "cannot write " + file.string() + ": " + reason);
 }
 
-[[noreturn]] void fail_with_errno(const fs::path& file) {
-    fail(file, std::strerror(errno));
-}
+[[noreturn]] void fail_with_errno(const fs::path& file) { fail(file, std::strerror(errno)); }
 
 /// The file that a rename would replace: `file`, or what it links to. Throws where that is no file one may replace.
 fs::path replaceable(const fs::path& file) {
-    if (!file.has_filename()) {
-        fail(file, "it names no file");
-    }
+    if (!file.has_filename()) fail(file, "it names no file");
     std::error_code missing;
     const fs::file_status status = fs::status(file, missing);
-    if (!fs::exists(status)) {
-        return file;
-    }
+    if (!fs::exists(status)) return file;
     if (!fs::is_regular_file(status)) {
         fail(file, fs::is_directory(status) ? "it is a folder" : "it is not a regular file");
     }
-    if (::access(file.c_str(), W_OK) != 0) {
-        fail_with_errno(file);
-    }
+    if (::access(file.c_str(), W_OK) != 0) fail_with_errno(file);
     return fs::canonical(file);
 }
 
@@ -49,19 +41,13 @@ public:
     explicit Part(const fs::path& file) : file_(file), target_(replaceable(file)), part_(target_) {
         part_ += fmt::format(".{}.part", ::getpid());
         descriptor_ = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
-        if (descriptor_ < 0) {
-            fail_with_errno(file_);
-        }
+        if (descriptor_ < 0) fail_with_errno(file_);
     }
     Part(const Part&) = delete;
     Part& operator=(const Part&) = delete;
     ~Part() {
-        if (descriptor_ >= 0) {
-            ::close(descriptor_);
-        }
-        if (!committed_) {
-            ::unlink(part_.c_str());
-        }
+        if (descriptor_ >= 0) ::close(descriptor_);
+        if (!committed_) ::unlink(part_.c_str());
     }
 
     void write(std::string_view bytes) {
@@ -77,9 +63,7 @@ public:
 
     void commit() {
         // Without it a loss of power may leave the new name to a file without its bytes.
-        if (::fsync(descriptor_) != 0) {
-            fail_with_errno(file_);
-        }
+        if (::fsync(descriptor_) != 0) fail_with_errno(file_);
         if (::close(std::exchange(descriptor_, -1)) != 0 || std::rename(part_.c_str(), target_.c_str()) != 0) {
             fail_with_errno(file_);
         }
@@ -87,7 +71,7 @@ public:
     }
 
 private:
-    fs::path file_;    // as the caller names it, for messages
+    fs::path file_;  // as the caller names it, for messages
     fs::path target_;
     fs::path part_;
     int descriptor_ = -1;
@@ -102,8 +86,6 @@ void write_file(const fs::path& file, std::string_view bytes) {
     part.commit();
 }
 
-void check_writable(const fs::path& file) {
-    Part part(file);
-}
+void check_writable(const fs::path& file) { Part part(file); }
 
 }  // namespace vkcppm

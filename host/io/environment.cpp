@@ -21,9 +21,7 @@ constexpr std::uintmax_t most_bytes = std::uintmax_t(1) << 30;  // 128 a pixel: 
 
 std::vector<std::uint8_t> read_bytes(const fs::path& file) {
     std::error_code error;
-    if (!fs::is_regular_file(file, error)) {
-        throw Error(ExitCode::no_input, file.string() + ": no such file");
-    }
+    if (!fs::is_regular_file(file, error)) throw Error(ExitCode::no_input, file.string() + ": no such file");
     const std::uintmax_t size = fs::file_size(file, error);
     if (!error && size > most_bytes) {
         throw Error(ExitCode::bad_scene,
@@ -42,12 +40,8 @@ bool begins_with(const std::vector<std::uint8_t>& bytes, std::string_view magic)
 }
 
 Image decode(const std::vector<std::uint8_t>& bytes, const fs::path& file) {
-    if (begins_with(bytes, "\x76\x2f\x31\x01")) {
-        return read_exr(file, most_environment_pixels);
-    }
-    if (begins_with(bytes, "#?")) {
-        return decode_hdr(bytes, file, most_environment_pixels);
-    }
+    if (begins_with(bytes, "\x76\x2f\x31\x01")) return read_exr(file, most_environment_pixels);
+    if (begins_with(bytes, "#?")) return decode_hdr(bytes, file, most_environment_pixels);
     throw Error(ExitCode::bad_scene, file.string() + ": is neither an OpenEXR nor a Radiance picture");
 }
 
@@ -56,9 +50,7 @@ void check(const Image& image, const fs::path& file) {
     for (std::size_t i = 0; i < image.rgb.size(); ++i) {
         const glm::vec3& v = image.rgb[i];
         const auto is_radiance = [](float x) { return x >= 0.0f && std::isfinite(x); };
-        if (is_radiance(v.r) && is_radiance(v.g) && is_radiance(v.b)) {
-            continue;
-        }
+        if (is_radiance(v.r) && is_radiance(v.g) && is_radiance(v.b)) continue;
         throw Error(ExitCode::bad_scene,
                     fmt::format("{}: pixel ({}, {}) is ({:g}, {:g}, {:g}); radiance must be finite and not negative",
                                 file.string(), i % size.width, i / size.width, v.r, v.g, v.b));

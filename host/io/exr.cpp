@@ -33,27 +33,19 @@ constexpr int no_worker_threads = 0;
 
 void require_file(const fs::path& file) {
     std::error_code ignored;
-    if (!fs::is_regular_file(file, ignored)) {
-        throw Error(ExitCode::no_input, file.string() + ": no such file");
-    }
+    if (!fs::is_regular_file(file, ignored)) throw Error(ExitCode::no_input, file.string() + ": no such file");
 }
 
-std::int64_t width(const Imath::Box2i& window) {
-    return std::int64_t(window.max.x) - window.min.x + 1;
-}
+std::int64_t width(const Imath::Box2i& window) { return std::int64_t(window.max.x) - window.min.x + 1; }
 
-std::int64_t height(const Imath::Box2i& window) {
-    return std::int64_t(window.max.y) - window.min.y + 1;
-}
+std::int64_t height(const Imath::Box2i& window) { return std::int64_t(window.max.y) - window.min.y + 1; }
 
 Image read_rgb(const fs::path& file) {
     Imf::InputFile input(file.c_str(), no_worker_threads);
     const Imath::Box2i data = input.header().dataWindow();
     const Imath::Box2i display = input.header().displayWindow();
     for (const char* name : {"R", "G", "B"}) {
-        if (!input.header().channels().findChannel(name)) {
-            fail_to_read(file, std::string("it has no channel ") + name);
-        }
+        if (!input.header().channels().findChannel(name)) fail_to_read(file, std::string("it has no channel ") + name);
     }
 
     std::vector<glm::vec3> pixels(std::size_t(width(data) * height(data)));
@@ -87,9 +79,7 @@ ExrChannels to_channels(const Image& image) {
     for (int c = 0; const char* name : {"R", "G", "B"}) {
         std::vector<float>& values = channels.values[name];
         values.reserve(image.rgb.size());
-        for (const glm::vec3& pixel : image.rgb) {
-            values.push_back(pixel[c]);
-        }
+        for (const glm::vec3& pixel : image.rgb) values.push_back(pixel[c]);
         ++c;
     }
     return channels;
@@ -103,16 +93,12 @@ void write_exr(const fs::path& file, const ExrChannels& channels, const ExrAttri
         Imf::Header header{int(columns), int(rows)};
         header.compression() = Imf::ZIP_COMPRESSION;
         Imf::addChromaticities(header, Imf::Chromaticities());  // the default is Rec. 709
-        for (const auto& [name, text] : attributes) {
-            header.insert(name, Imf::StringAttribute(text));
-        }
+        for (const auto& [name, text] : attributes) header.insert(name, Imf::StringAttribute(text));
         Imf::FrameBuffer frame;
         std::vector<std::vector<Imath::half>> halves;  // as they are written
         for (const auto& [name, values] : channels.values) {
             assert(values.size() == channels.extent.pixels());
-            if (depth == ExrDepth::half) {
-                halves.emplace_back(values.begin(), values.end());
-            }
+            if (depth == ExrDepth::half) halves.emplace_back(values.begin(), values.end());
             const Imf::PixelType type = depth == ExrDepth::half ? Imf::HALF : Imf::FLOAT;
             const std::size_t stride = depth == ExrDepth::half ? sizeof(Imath::half) : sizeof(float);
             const void* data = depth == ExrDepth::half ? static_cast<const void*>(halves.back().data()) : values.data();

@@ -19,7 +19,7 @@ namespace {
 // have less than a byte for a pixel before that. An even picture of 16384x8192 pixels takes 120 KB in its best.
 constexpr std::uint64_t most_pixels_per_byte = 8192;
 constexpr std::uint32_t magic = 20000630;
-constexpr std::uint64_t offset_size = 8;        // of a chunk, in the table behind the headers
+constexpr std::uint64_t offset_size = 8;                       // of a chunk, in the table behind the headers
 constexpr std::uint64_t usual_chunk = std::uint64_t(1) << 26;  // bytes that a chunk may unpack to in any file
 constexpr std::size_t longest_name = 255;
 
@@ -34,7 +34,7 @@ struct Part {
     std::optional<Window> data;
     std::array<std::uint32_t, 2> tile{0, 0};  // width and height; 0: scan lines
     std::uint8_t compression = 0;
-    std::uint64_t pixel_bytes = 0;            // of all channels
+    std::uint64_t pixel_bytes = 0;  // of all channels
 };
 
 /// Rows that are compressed together.
@@ -48,7 +48,9 @@ std::uint64_t rows_a_chunk(std::uint8_t compression) {
 class HeaderReader {
 public:
     HeaderReader(const std::filesystem::path& file, std::uint64_t most_pixels)
-        : file_(file), in_(file, std::ios::binary), size_(std::filesystem::file_size(file)),
+        : file_(file),
+          in_(file, std::ios::binary),
+          size_(std::filesystem::file_size(file)),
           most_pixels_(most_pixels) {}
 
     void check() {
@@ -115,11 +117,30 @@ private:
 
     /// False where a value of that type does not end after `size` bytes: OpenEXR would go on reading where it does.
     bool skip(const std::string& type, std::int32_t size, Part& part) {
-        static const std::map<std::string, std::int32_t> sizes = {
-            {"box2f", 16}, {"box2i", 16}, {"chromaticities", 32}, {"compression", 1}, {"deepImageState", 1}, {"double", 8},
-            {"envmap", 1}, {"float", 4}, {"int", 4}, {"keycode", 28}, {"lineOrder", 1}, {"m33d", 72}, {"m33f", 36},
-            {"m44d", 128}, {"m44f", 64}, {"rational", 8}, {"tiledesc", 9}, {"timecode", 8}, {"v2d", 16}, {"v2f", 8},
-            {"v2i", 8}, {"v3d", 24}, {"v3f", 12}, {"v3i", 12}};
+        static const std::map<std::string, std::int32_t> sizes = {{"box2f", 16},
+                                                                  {"box2i", 16},
+                                                                  {"chromaticities", 32},
+                                                                  {"compression", 1},
+                                                                  {"deepImageState", 1},
+                                                                  {"double", 8},
+                                                                  {"envmap", 1},
+                                                                  {"float", 4},
+                                                                  {"int", 4},
+                                                                  {"keycode", 28},
+                                                                  {"lineOrder", 1},
+                                                                  {"m33d", 72},
+                                                                  {"m33f", 36},
+                                                                  {"m44d", 128},
+                                                                  {"m44f", 64},
+                                                                  {"rational", 8},
+                                                                  {"tiledesc", 9},
+                                                                  {"timecode", 8},
+                                                                  {"v2d", 16},
+                                                                  {"v2f", 8},
+                                                                  {"v2i", 8},
+                                                                  {"v3d", 24},
+                                                                  {"v3f", 12},
+                                                                  {"v3i", 12}};
         if (const auto found = sizes.find(type); found != sizes.end()) return size == found->second;
         if (type == "chlist") return skip_channels(size, part);
         if (type == "floatvector") return size % 4 == 0;
@@ -157,8 +178,8 @@ private:
         if (width <= 0 || height <= 0) fail(fmt::format("its {} is {}x{} pixels", name, width, height));
         const auto most = std::int64_t(std::min(most_pixels_, most_pixels_per_byte * size_));
         if (width > most || height > most || width * height > most) {
-            fail(fmt::format("its {} is {}x{} pixels; the limit is {} in all, for its {} bytes", name, width, height, most,
-                             size_));
+            fail(fmt::format("its {} is {}x{} pixels; the limit is {} in all, for its {} bytes", name, width, height,
+                             most, size_));
         }
     }
 

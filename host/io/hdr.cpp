@@ -47,18 +47,14 @@ private:
     /// Up to the next line feed, which is taken as well.
     std::string take_line() {
         const auto end = std::find(rest_.begin(), rest_.end(), '\n');
-        if (end == rest_.end()) {
-            fail("its header has no end");
-        }
+        if (end == rest_.end()) fail("its header has no end");
         const std::string line(rest_.begin(), end);
         rest_ = {end + 1, rest_.end()};
         return line;
     }
 
     std::uint8_t take_byte() {
-        if (rest_.empty()) {
-            fail_in_row("is cut short");
-        }
+        if (rest_.empty()) fail_in_row("is cut short");
         const std::uint8_t byte = rest_.front();
         rest_ = rest_.subspan(1);
         return byte;
@@ -83,9 +79,7 @@ private:
 
     /// Everything before the size; returns what the pixels are to be divided by.
     glm::dvec3 read_header() {
-        if (!take_line().starts_with("#?")) {
-            fail("it does not begin with #?");
-        }
+        if (!take_line().starts_with("#?")) fail("it does not begin with #?");
         glm::dvec3 exposure(1.0);
         for (std::string line = take_line(); !line.empty() && line != "\r"; line = take_line()) {
             std::string_view text = line;
@@ -97,9 +91,7 @@ private:
             } else if (name == "EXPOSURE") {
                 exposure *= take_factor(text);
             } else if (name == "COLORCORR") {
-                for (int c = 0; c < 3; ++c) {
-                    exposure[c] *= take_factor(text);
-                }
+                for (int c = 0; c < 3; ++c) exposure[c] *= take_factor(text);
             }
         }
         return exposure;
@@ -109,9 +101,7 @@ private:
     Extent read_size(std::size_t most_pixels) {
         const std::string line = take_line();
         const auto take_side = [&](std::string_view& text, std::string_view axis, std::uint32_t& side) {
-            if (!text.starts_with(axis)) {
-                return false;
-            }
+            if (!text.starts_with(axis)) return false;
             text.remove_prefix(axis.size());
             const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), side);
             text.remove_prefix(std::size_t(end - text.data()));
@@ -139,9 +129,7 @@ private:
                 fail_in_row(fmt::format("has {} columns, the picture {}", width, row.size()));
             }
             rest_ = rest_.subspan(4);
-            for (int channel = 0; channel < 4; ++channel) {
-                read_channel(row, channel);
-            }
+            for (int channel = 0; channel < 4; ++channel) read_channel(row, channel);
         } else {
             read_pixels(row);
         }
@@ -157,9 +145,7 @@ private:
                 fail_in_row(fmt::format("has a run of {} at column {} of {}", count, x, row.size()));
             }
             std::uint8_t value = is_run ? take_byte() : 0;
-            for (const std::size_t end = x + count; x < end; ++x) {
-                row[x][channel] = is_run ? value : take_byte();
-            }
+            for (const std::size_t end = x + count; x < end; ++x) row[x][channel] = is_run ? value : take_byte();
         }
     }
 
@@ -187,9 +173,7 @@ private:
     /// mantissa / 256 * 2^(exponent - 128). Radiance itself adds half a step to the mantissa; other readers do not, and
     /// without it 1 stays 1.
     static glm::dvec3 radiance(const Rgbe& pixel) {
-        if (pixel[3] == 0) {
-            return glm::dvec3(0.0);
-        }
+        if (pixel[3] == 0) return glm::dvec3(0.0);
         return std::ldexp(1.0, pixel[3] - 136) * glm::dvec3(pixel[0], pixel[1], pixel[2]);
     }
 

@@ -17,7 +17,7 @@ namespace vkcppm {
 namespace {
 
 constexpr int bins = 16;
-constexpr std::uint32_t width = 4;         // children of a node
+constexpr std::uint32_t width = 4;  // children of a node
 // In triangle tests, the best on software Vulkan of those tried, from 1 and 0 on.
 constexpr float node_cost = 5.0f;          // of visiting a four-wide node
 constexpr float leaf_cost = 2.0f;          // of beginning a leaf
@@ -295,11 +295,10 @@ private:
         std::array<Range, 2> halves = {Range{range.first, middle}, Range{middle, range.last}};
         std::ranges::copy(primitives(depth, range), primitives(depth + 1, range).begin());
         const std::span<Primitive> both = primitives(depth + 1, range);
-        std::nth_element(both.begin(), both.begin() + range.count() / 2, both.end(),
-                         [&](const Primitive& a, const Primitive& b) {
-                             return std::pair(float(a.centre()[axis]), a.index) <
-                                    std::pair(float(b.centre()[axis]), b.index);
-                         });
+        std::nth_element(
+            both.begin(), both.begin() + range.count() / 2, both.end(), [&](const Primitive& a, const Primitive& b) {
+                return std::pair(float(a.centre()[axis]), a.index) < std::pair(float(b.centre()[axis]), b.index);
+            });
         for (Range& half : halves) {
             for (const Primitive& primitive : primitives(depth + 1, half)) half.centres.grow(primitive.centre());
         }

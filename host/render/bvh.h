@@ -13,9 +13,9 @@
 namespace vkcppm {
 
 struct Bvh {
-    std::vector<gpu::BvhNode> nodes;      // root first, a node before those below it
-    std::vector<std::uint32_t> order;     // [triangles] leaf order: position -> index of the input
-    std::uint32_t stack = 1;              // nodes, at most, of which children can wait while one is traversed
+    std::vector<gpu::BvhNode> nodes;   // root first, a node before those below it
+    std::vector<std::uint32_t> order;  // [triangles] leaf order: position -> index of the input
+    std::uint32_t stack = 1;           // nodes, at most, of which children can wait while one is traversed
 };
 
 /// Builds a binary tree by binned surface area heuristic (Wald 2007), all cores, the same tree on any number of

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <tuple>
 
+#include <boost/geometry/strategies/strategies.hpp>  // the tree needs it, and Boost 1.83 does not bring it along
 #include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/point.hpp>
 #include <boost/geometry/index/rtree.hpp>
@@ -21,9 +22,7 @@ using Point = geometry::model::point<float, 3, geometry::cs::cartesian>;
 using Box = geometry::model::box<Point>;
 using Entry = std::pair<Box, std::uint32_t>;  // of a triangle
 
-bool is_before(const glm::vec3& a, const glm::vec3& b) {
-    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-}
+bool is_before(const glm::vec3& a, const glm::vec3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
 
 /// The corners from the least one on, in the same sense.
 Corners from_least(const Corners& c) {
@@ -39,9 +38,7 @@ bool is_before(const Corners& a, const Corners& b) {
 }
 
 /// Twice the area times the normal of the front.
-glm::dvec3 area_vector(const Corners& c) {
-    return glm::cross(glm::dvec3(c[1] - c[0]), glm::dvec3(c[2] - c[0]));
-}
+glm::dvec3 area_vector(const Corners& c) { return glm::cross(glm::dvec3(c[1] - c[0]), glm::dvec3(c[2] - c[0])); }
 
 glm::dvec3 unit_normal(const Corners& c) { return glm::normalize(area_vector(c)); }
 
@@ -68,8 +65,8 @@ struct SortedTriangles {
 
     /// The triangles with the corners of that key.
     std::span<const std::uint32_t> equal(const Corners& key) const {
-        const auto first = std::partition_point(order.begin(), order.end(),
-                                                [&](std::uint32_t i) { return is_before(keys[i], key); });
+        const auto first =
+            std::partition_point(order.begin(), order.end(), [&](std::uint32_t i) { return is_before(keys[i], key); });
         const auto last = std::partition_point(first, order.end(), [&](std::uint32_t i) { return keys[i] == key; });
         return {first, last};
     }

@@ -18,8 +18,7 @@ namespace {
 constexpr std::array rows = {
     EstimatorRow{"cppm", ESTIMATOR_CPPM, Statistic::tally, false, 0,
                  "chi-squared test of a uniform density (Lin et al. 2020)"},
-    EstimatorRow{"sppm", ESTIMATOR_SPPM, Statistic::none, false, 0,
-                 "shared statistics (Hachisuka and Jensen 2009)"},
+    EstimatorRow{"sppm", ESTIMATOR_SPPM, Statistic::none, false, 0, "shared statistics (Hachisuka and Jensen 2009)"},
     EstimatorRow{"sppm-kz", ESTIMATOR_SPPM_KZ, Statistic::none, false, 0,
                  "one schedule for all pixels (Knaus and Zwicker 2011)"},
     EstimatorRow{"appm", ESTIMATOR_APPM, Statistic::derivative, false, 0,
@@ -34,8 +33,7 @@ constexpr std::array rows = {
                  "shrinks with every batch, without a test: the ablation"},
     EstimatorRow{"ftest", ESTIMATOR_FTEST, Statistic::contribution, false, 0,
                  "analysis of variance of contributions (after Lin et al. 2025)"},
-    EstimatorRow{"ftest-fold", ESTIMATOR_FTEST_FOLD, Statistic::contribution, true, 0,
-                 "the same on folded sectors"},
+    EstimatorRow{"ftest-fold", ESTIMATOR_FTEST_FOLD, Statistic::contribution, true, 0, "the same on folded sectors"},
 };
 
 }  // namespace

@@ -17,8 +17,8 @@ enum class Statistic {
 };
 
 struct EstimatorRow {
-    std::string_view name;     // as --estimator takes it
-    std::uint32_t id;          // ESTIMATOR_* of shaders/shared/estimators.h
+    std::string_view name;  // as --estimator takes it
+    std::uint32_t id;       // ESTIMATOR_* of shaders/shared/estimators.h
     Statistic statistic;
     bool folded;               // opposite sectors are one cell
     std::uint32_t fitted;      // parameters of the density that are fitted before a chi-squared test

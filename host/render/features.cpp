@@ -120,8 +120,10 @@ std::uint32_t bits_of(const std::vector<Feature>& features) {
 }
 
 std::string gathering_rule() {
-    return R"(Eye paths gather photons on diffuse lobes and follow lobes without roughness. A rough lobe is both followed, with its
-own density p, and gathered on, as by k photons (--knn) of density cos/pi, weighed by the balance heuristic: of its
+    return "Eye paths gather photons on diffuse lobes and follow lobes without roughness. A rough lobe is both "
+           "followed, "
+           "with its\n"
+           R"(own density p, and gathered on, as by k photons (--knn) of density cos/pi, weighed by the balance heuristic: of its
 light p / (p + k cos/pi) is found by following and the rest by photons. Where a rough lobe may be followed a point of a
 light is asked for too, weighed against meeting it by the same heuristic. What of a punctual light comes by way of
 mirrors or smooth glass is brought by photons alone.)";

@@ -22,12 +22,12 @@ namespace {
 
 constexpr std::uint32_t timed_launches = 2048;
 constexpr std::uint32_t most_photons_per_lane = 64;
-constexpr std::uint32_t stride_invocations = 16384;    // of kernels that stride over their input
-constexpr std::uint32_t first_photon_capacity = 6;     // photons a path, before a render knows better
-constexpr double radius_cap = 0.2;                     // of the scene's radius
-constexpr double footprint_cap = 64.0;                 // footprints of the pixel
-constexpr std::uint64_t most_sorted_a_lane = 32768;    // well below the loop trips of every driver
-constexpr std::uint32_t plan_interval = 16;            // iterations between plans of the grid, after the first few
+constexpr std::uint32_t stride_invocations = 16384;  // of kernels that stride over their input
+constexpr std::uint32_t first_photon_capacity = 6;   // photons a path, before a render knows better
+constexpr double radius_cap = 0.2;                   // of the scene's radius
+constexpr double footprint_cap = 64.0;               // footprints of the pixel
+constexpr std::uint64_t most_sorted_a_lane = 32768;  // well below the loop trips of every driver
+constexpr std::uint32_t plan_interval = 16;          // iterations between plans of the grid, after the first few
 
 /// True where the grid is planned before iteration i: 0, the powers of two, multiples of plan_interval.
 bool plans_grid(std::uint32_t i) { return (i & (i - 1)) == 0 || i % plan_interval == 0; }
@@ -338,9 +338,9 @@ bool Integrator::run_to(std::uint32_t target) {
 std::vector<Integrator::PassHash> Integrator::run_hashed() {
     const std::uint32_t iteration = completed_;
     std::vector<PassHash> hashes;
-    for (const auto& [pass, name] : {std::pair(Pass::eye, "eye"), std::pair(Pass::photon, "photon"),
-                                     std::pair(Pass::grid, "grid"), std::pair(Pass::knn, "knn"),
-                                     std::pair(Pass::gather, "gather"), std::pair(Pass::update, "update")}) {
+    for (const auto& [pass, name] :
+         {std::pair(Pass::eye, "eye"), std::pair(Pass::photon, "photon"), std::pair(Pass::grid, "grid"),
+          std::pair(Pass::knn, "knn"), std::pair(Pass::gather, "gather"), std::pair(Pass::update, "update")}) {
         commands_.begin();
         iterate(iteration, pass, pass, 0);
         finish();

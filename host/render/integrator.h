@@ -115,10 +115,10 @@ private:
     std::map<std::string, KernelChoice> choices_;
     std::map<Pass, std::uint32_t> rounds_;
     std::vector<PassReport> passes_;
-    double scale_ = 1.0;                   // frame units a metre
+    double scale_ = 1.0;  // frame units a metre
     std::uint64_t pixels_ = 0;
     std::uint32_t digit_bits_ = 7;
-    std::uint32_t digits_ = 3;             // radix passes
+    std::uint32_t digits_ = 3;  // radix passes
     std::uint32_t completed_ = 0;
     std::uint64_t rays_ = 0;
     std::uint64_t stored_ = 0;

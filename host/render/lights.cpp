@@ -17,21 +17,17 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr std::uint32_t max_cut = 6;         // a textured emitter is cut in four at most this often
-constexpr double texels_a_part = 4.0;        // parts that are smaller are not cut
-constexpr int part_samples = 4;              // of a part along either side, to weigh it
-constexpr std::size_t max_parts = 1u << 20;  // of all textured emitters
-constexpr Extent least_map{128, 64};         // columns and rows of an environment: coarser ones are cut
-constexpr std::uint64_t most_cut = 1u << 22; //   into no more pixels than that
+constexpr std::uint32_t max_cut = 6;          // a textured emitter is cut in four at most this often
+constexpr double texels_a_part = 4.0;         // parts that are smaller are not cut
+constexpr int part_samples = 4;               // of a part along either side, to weigh it
+constexpr std::size_t max_parts = 1u << 20;   // of all textured emitters
+constexpr Extent least_map{128, 64};          // columns and rows of an environment: coarser ones are cut
+constexpr std::uint64_t most_cut = 1u << 22;  //   into no more pixels than that
 
-double mean(const glm::dvec3& v) {
-    return (v.x + v.y + v.z) / 3.0;
-}
+double mean(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
 
 /// 1 - cos of an angle.
-double versine(double angle) {
-    return 2.0 * std::sin(0.5 * angle) * std::sin(0.5 * angle);
-}
+double versine(double angle) { return 2.0 * std::sin(0.5 * angle) * std::sin(0.5 * angle); }
 
 /// Areas of the faces of the scene's bounds across x, y and z, which are padded: those of a flat scene are not 0.
 glm::dvec3 face_areas(const FlatScene& flat) {
@@ -40,9 +36,7 @@ glm::dvec3 face_areas(const FlatScene& flat) {
 }
 
 /// The area by which parallel light enters where the box shows that much of itself: entry_area of the kernels.
-double entry_area(const FlatScene& flat, double box) {
-    return std::min(box, pi * std::pow(bounds_radius(flat), 2));
-}
+double entry_area(const FlatScene& flat, double box) { return std::min(box, pi * std::pow(bounds_radius(flat), 2)); }
 
 /// Alias table (Walker 1974, Vose 1991): entry i is kept with probability keep[i], else alias[i] stands for it; then
 /// each is drawn in proportion to its weight.
@@ -379,9 +373,7 @@ void add_environment(const Scene& scene, FlatScene& flat, std::vector<WeighedLig
 
 }  // namespace
 
-double bounds_radius(const FlatScene& flat) {
-    return flat.radius > 0.0 ? flat.radius + 2e-5 : 0.0;
-}
+double bounds_radius(const FlatScene& flat) { return flat.radius > 0.0 ? flat.radius + 2e-5 : 0.0; }
 
 void add_lights(const Scene& scene, FlatScene& flat) {
     std::vector<WeighedLight> lights;

@@ -23,7 +23,9 @@ Specialization specialize(const FlatScene& scene, const Settings& settings, Path
 
 PathTracer::PathTracer(Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings,
                        Light light)
-    : device_(device), bindings_(device), commands_(device, bindings_, timed_launches),
+    : device_(device),
+      bindings_(device),
+      commands_(device, bindings_, timed_launches),
       buffers_(device, bindings_, scene),
       kernel_(device, bindings_, "path", kernel_module("path").spirv, specialize(scene, settings, light)),
       size_(*settings.size) {

@@ -34,7 +34,7 @@ public:
     double seconds() const { return pass_.device_seconds; }  // device time so far
     const PassReport& pass() const { return pass_; }
     std::uint64_t rays() const { return rays_; }
-    std::uint64_t invalid() const { return invalid_; }       // paths that were not finite and were dropped
+    std::uint64_t invalid() const { return invalid_; }  // paths that were not finite and were dropped
 
 private:
     Device& device_;

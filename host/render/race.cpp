@@ -39,7 +39,8 @@ public:
         } catch (const Error& error) {
             if (error.code() != ExitCode::out_of_device_memory) throw;
             throw Error(error.code(), fmt::format("entrant '{}': {}; the entrants before it hold {} of the device's {} "
-                                                  "bytes", run.entrant.name, error.what(), device.allocated_bytes(),
+                                                  "bytes",
+                                                  run.entrant.name, error.what(), device.allocated_bytes(),
                                                   device.info().memory_bytes));
         }
         run_.curves.emplace_back();

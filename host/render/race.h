@@ -20,7 +20,7 @@ class Device;
 
 /// An estimator with its parameters.
 struct Entrant {
-    std::string name;    // as the command line has it: "cppm:beta=1.5"
+    std::string name;  // as the command line has it: "cppm:beta=1.5"
     Settings settings;
 };
 
@@ -34,29 +34,29 @@ struct RaceSettings {
 
 /// What an entrant did.
 struct RaceRun {
-    Entrant entrant;                     // settings as resolved
-    std::vector<Curve> curves;           // [seeds] snapshots as is_snapshot says, and at the end
-    std::vector<Report> reports;         // [seeds]
-    Image image;                         // of the first seed, at its end
-    std::vector<float> radius;           // [P] m, the same
-    std::vector<double> squared_error;   // [P] mean over channels and seeds, each at its end, (W m^-2 sr^-1)^2
+    Entrant entrant;                    // settings as resolved
+    std::vector<Curve> curves;          // [seeds] snapshots as is_snapshot says, and at the end
+    std::vector<Report> reports;        // [seeds]
+    Image image;                        // of the first seed, at its end
+    std::vector<float> radius;          // [P] m, the same
+    std::vector<double> squared_error;  // [P] mean over channels and seeds, each at its end, (W m^-2 sr^-1)^2
 };
 
 struct RaceResult {
-    std::vector<RaceRun> runs;           // [entrants]
-    std::vector<std::uint32_t> seeds;    // that were run to their ends, or the first alone where it was cut short
-    std::size_t baseline = 0;            // of runs: sppm, else the first
+    std::vector<RaceRun> runs;         // [entrants]
+    std::vector<std::uint32_t> seeds;  // that were run to their ends, or the first alone where it was cut short
+    std::size_t baseline = 0;          // of runs: sppm, else the first
     bool interrupted = false;
     std::vector<std::string> warnings;
 };
 
 /// A race between two submissions.
 struct RaceProgress {
-    std::uint32_t seed = 0;              // index of the one that runs
+    std::uint32_t seed = 0;  // index of the one that runs
     std::uint32_t seeds = 0;
-    double done = 0.0;                   // of all seeds and entrants, 0..1
-    double wall_seconds = 0.0;           // since the race began
-    std::span<const RaceRun> runs;       // the last curve of each is that of the running seed
+    double done = 0.0;              // of all seeds and entrants, 0..1
+    double wall_seconds = 0.0;      // since the race began
+    std::span<const RaceRun> runs;  // the last curve of each is that of the running seed
 };
 
 /// False ends the race after the submission that is done.

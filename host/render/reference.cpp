@@ -22,8 +22,8 @@ namespace vkcppm {
 namespace {
 
 constexpr std::uint32_t iterations_a_batch = 4;
-constexpr std::uint32_t least_batches = 8;      // of each half, before an error is told
-constexpr double least_share = 0.1;             // of the time, for a half that may not know its error yet
+constexpr std::uint32_t least_batches = 8;  // of each half, before an error is told
+constexpr double least_share = 0.1;         // of the time, for a half that may not know its error yet
 // The starting radius, in footprints of the pixel (discs of a pixel's area), and its schedule, R^2 ~ N^(schedule - 1):
 // the bias that the kernel leaves, at edges, goes to 0 with R, and variance ~ 1 / (N R^2) with N.
 constexpr double first_radius = 4.0;

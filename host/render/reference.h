@@ -32,23 +32,23 @@ struct ReferenceSettings {
 
 struct Reference {
     Image mean;
-    Image standard_error;          // of the mean, a pixel and channel: from independent batches
+    Image standard_error;        // of the mean, a pixel and channel: from independent batches
     std::vector<float> trusted;  // [P] 1 or 0: the root mean square of the relative standard error, over the pixel and
                                  // its eight neighbours, is at most ReferenceSettings::trust. Relative: se^2 over
                                  // r^2 + 0.01, as relMSE weighs it, the mean over channels.
-    ReferenceSettings settings;    // as resolved
-    std::uint32_t samples = 0;     // paths a pixel, done
+    ReferenceSettings settings;  // as resolved
+    std::uint32_t samples = 0;   // paths a pixel, done
     std::uint32_t iterations = 0;  // of caustics, done
     /// What the errors of the mean itself are expected to add to a measure of core/metrics.h against it.
     double mse = 0.0;
     double srgb_mse = 0.0;
     double relmse = 0.0;
-    double relmse_paths = 0.0;     // what each half adds to it
+    double relmse_paths = 0.0;  // what each half adds to it
     double relmse_caustics = 0.0;
-    double caustic_share = 0.0;    // of the picture's light, sum over channels
-    double median_error = 0.0;     // relative standard error of pixels
-    double error_99 = 0.0;         // its 99th percentile
-    std::size_t untrusted = 0;     // pixels
+    double caustic_share = 0.0;  // of the picture's light, sum over channels
+    double median_error = 0.0;   // relative standard error of pixels
+    double error_99 = 0.0;       // its 99th percentile
+    std::size_t untrusted = 0;   // pixels
     Report report;
     std::vector<std::string> warnings;  // what went wrong on the way, one line each
 };
@@ -56,7 +56,7 @@ struct Reference {
 struct ReferenceProgress {
     std::uint32_t samples = 0;
     std::uint32_t iterations = 0;
-    double relmse = 0.0;           // expected, so far
+    double relmse = 0.0;  // expected, so far
     double wall_seconds = 0.0;
 };
 

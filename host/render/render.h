@@ -24,22 +24,22 @@ class Device;
 
 /// What a render is measured against while it runs.
 struct Measuring {
-    Image reference;                        // of the size of the picture
-    const Metric* metric = nullptr;         // the one that progress tells
-    std::optional<double> stop_at;          // the render ends with the first iteration after which it is at most this
+    Image reference;                 // of the size of the picture
+    const Metric* metric = nullptr;  // the one that progress tells
+    std::optional<double> stop_at;   // the render ends with the first iteration after which it is at most this
 };
 
 /// The latest error of a render that is measured.
 struct LatestError {
     const Metric* metric = nullptr;
     double value = 0.0;
-    std::uint64_t iterations = 0;           // after which it was measured
+    std::uint64_t iterations = 0;  // after which it was measured
 };
 
 struct Progress {
     std::uint64_t iterations_done = 0;
-    std::uint64_t iterations_total = 0;     // the bound of the settings
-    double wall_seconds = 0.0;              // since the first iteration began, without measuring
+    std::uint64_t iterations_total = 0;  // the bound of the settings
+    double wall_seconds = 0.0;           // since the first iteration began, without measuring
     std::optional<LatestError> error = {};
 };
 
@@ -58,13 +58,13 @@ using OnPassHash = std::function<void(std::uint32_t iteration, std::string_view 
 
 struct Rendering {
     Image image;
-    Settings settings;                      // as resolved: size and camera filled in
+    Settings settings;  // as resolved: size and camera filled in
     Report report;
-    Curve curve;                            // at every is_snapshot() and after the last iteration, where measured
+    Curve curve;  // at every is_snapshot() and after the last iteration, where measured
     /// [P] each, where the settings ask for them: ppm.radius (m), ppm.photons, ppm.batch, ppm.rejections,
     /// ppm.statistic (over its threshold), ppm.iterations, Z (m along the camera's axis), Albedo.R/G/B, N.X/Y/Z.
     std::map<std::string, std::vector<float>> aovs;
-    std::vector<std::string> warnings;      // what went wrong on the way, one line each
+    std::vector<std::string> warnings;  // what went wrong on the way, one line each
 };
 
 /// Throws Error(usage) where a setting is out of range, with its name, value and limit.

@@ -17,13 +17,13 @@ struct PassReport {
 
 /// Buffers of the device that hold an entry for each of something: pixels, photon slots, triangles, ...
 struct MemoryReport {
-    std::string of;                         // what there are `count` of
+    std::string of;  // what there are `count` of
     std::uint64_t count = 0;
-    std::uint64_t bytes = 0;                // of all of them
+    std::uint64_t bytes = 0;  // of all of them
 };
 
 struct Report {
-    std::vector<PassReport> passes;         // in the order in which an iteration runs them
+    std::vector<PassReport> passes;  // in the order in which an iteration runs them
     std::uint64_t iterations = 0;
     std::uint64_t emitted_paths = 0;
     std::uint64_t stored_photons = 0;

@@ -20,8 +20,7 @@ constexpr std::uint32_t max_side = 65536;
 constexpr std::size_t max_pixels = std::size_t(1) << 27;
 constexpr double longest = 1e9;  // m, of a lens; one over it is the shortest
 
-template <typename T>
-void check_range(const char* option, T value, T low, T high) {
+template <typename T> void check_range(const char* option, T value, T low, T high) {
     if (!(value >= low && value <= high)) {
         throw Error(ExitCode::usage, fmt::format("{} {} is outside {}..{}", option, value, low, high));
     }

@@ -19,7 +19,7 @@ struct SurfaceTraits {
     bool thin = false;     //   without a volume
     bool absorbs = false;  //   with absorption in its volume
     bool disperses = false;
-    bool rough = false;  // a lobe of reflection or transmission of roughness above 0
+    bool rough = false;   // a lobe of reflection or transmission of roughness above 0
     bool smooth = false;  // a delta lobe of reflection or transmission
     bool clearcoat = false;
     bool rough_clearcoat = false;

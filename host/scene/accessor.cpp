@@ -12,16 +12,14 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "glTF buffers are little-endian");
 
-template <typename T>
-T load(const std::uint8_t* bytes) {
+template <typename T> T load(const std::uint8_t* bytes) {
     T value;
     std::memcpy(&value, bytes, sizeof value);  // a hostile file need not align its elements
     return value;
 }
 
 /// An integer component, normalized to [0, 1] or [-1, 1] (glTF 2.0, section 3.11).
-template <typename T>
-double load_integer(const std::uint8_t* bytes, bool normalized) {
+template <typename T> double load_integer(const std::uint8_t* bytes, bool normalized) {
     const double value = load<T>(bytes);
     return normalized ? std::max(value / std::numeric_limits<T>::max(), -1.0) : value;
 }
@@ -50,8 +48,7 @@ std::uint32_t load_index(const ElementBytes& elements, std::size_t i, ComponentT
 }
 
 /// [count] elements: zeros, then the base, then the sparse values over it. load(elements, i) gives element i.
-template <typename T, typename Load>
-std::vector<T> read(const AccessorView& accessor, const Load& load) {
+template <typename T, typename Load> std::vector<T> read(const AccessorView& accessor, const Load& load) {
     std::vector<T> elements(accessor.count, T(0));
     if (accessor.base) {
         for (std::size_t i = 0; i < accessor.count; ++i) elements[i] = load(*accessor.base, i);
@@ -110,9 +107,8 @@ template std::vector<glm::dvec3> read_vectors<3>(const AccessorView&);
 template std::vector<glm::dvec4> read_vectors<4>(const AccessorView&);
 
 std::vector<std::uint32_t> read_indices(const AccessorView& accessor) {
-    return read<std::uint32_t>(accessor, [&](const ElementBytes& elements, std::size_t i) {
-        return load_index(elements, i, accessor.type);
-    });
+    return read<std::uint32_t>(
+        accessor, [&](const ElementBytes& elements, std::size_t i) { return load_index(elements, i, accessor.type); });
 }
 
 }  // namespace vkcppm

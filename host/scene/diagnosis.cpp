@@ -21,16 +21,16 @@ namespace {
 
 // What common sources of light have, with a wide margin on either side: what lies outside was most likely meant in
 // lumen, candela or lux, of which a watt of green light has 683. A searchlight's beam can be meant as it is.
-constexpr double most_intensity = 1e4;         // W/sr; a floodlight of 100 kW has 8e3 in every direction
-constexpr double most_irradiance = 1e4;        // W/m^2; the sun has 1361 above the air and 1e5 lux on the ground
-constexpr double most_radiance = 1e8;          // W m^-2 sr^-1; the sun's surface has 2e7
-constexpr double least_intensity = 1e-6;       // W/sr; an indicator lamp has 1e-4
-constexpr double least_irradiance = 1e-6;      // W/m^2; a clear night without a moon
-constexpr double least_radiance = 1e-8;        // W m^-2 sr^-1; the night sky has 1e-7
+constexpr double most_intensity = 1e4;     // W/sr; a floodlight of 100 kW has 8e3 in every direction
+constexpr double most_irradiance = 1e4;    // W/m^2; the sun has 1361 above the air and 1e5 lux on the ground
+constexpr double most_radiance = 1e8;      // W m^-2 sr^-1; the sun's surface has 2e7
+constexpr double least_intensity = 1e-6;   // W/sr; an indicator lamp has 1e-4
+constexpr double least_irradiance = 1e-6;  // W/m^2; a clear night without a moon
+constexpr double least_radiance = 1e-8;    // W m^-2 sr^-1; the night sky has 1e-7
 
 // Discs of photons do not shrink below 10^-6 of the scene's radius, and rays start as far off a surface that is as
 // large.
-constexpr double least_extent = 2e-5;          // of the scene's, for ten such discs across
+constexpr double least_extent = 2e-5;  // of the scene's, for ten such discs across
 
 constexpr std::size_t most_solid_angles = std::size_t(1) << 22;  // a quarter of a second
 
@@ -133,9 +133,10 @@ private:
         const auto is_thin = [](const Material& material) { return is_glass(material) && !is_solid_glass(material); };
         for (const Shell& shell : find_shells(scene_, triangles_of(scene_, is_thin))) {
             if (!shell.is_closed()) continue;
-            warnings_.add("glass without a volume on a closed mesh: light passes straight on and makes no caustic; "
-                          "--thin-glass solid makes it refract, as does a thicknessFactor",
-                          shell_name(shell));
+            warnings_.add(
+                "glass without a volume on a closed mesh: light passes straight on and makes no caustic; "
+                "--thin-glass solid makes it refract, as does a thicknessFactor",
+                shell_name(shell));
         }
     }
 
@@ -148,13 +149,14 @@ private:
 
     void check_solid(const Shell& shell, SolidGlass& glass) {
         if (shell.open_edges > 0) {
-            warnings_.add("glass with a volume on an open mesh: light that enters is not sure to leave",
-                          fmt::format("{}, {} edges with an odd number of triangles", shell_name(shell),
-                                      shell.open_edges));
+            warnings_.add(
+                "glass with a volume on an open mesh: light that enters is not sure to leave",
+                fmt::format("{}, {} edges with an odd number of triangles", shell_name(shell), shell.open_edges));
         } else if (shell.twisted_edges > 0) {
-            warnings_.add("glass with a volume on a mesh whose triangles disagree about the front: inside and outside "
-                          "change places",
-                          fmt::format("{}, {} edges", shell_name(shell), shell.twisted_edges));
+            warnings_.add(
+                "glass with a volume on a mesh whose triangles disagree about the front: inside and outside "
+                "change places",
+                fmt::format("{}, {} edges", shell_name(shell), shell.twisted_edges));
         } else if (shell.is_flat()) {
             warnings_.add("glass with a volume on a mesh that encloses none", shell_name(shell));
         } else if (shell.volume < 0.0) {
@@ -173,10 +175,11 @@ private:
         for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
             const Material& material = scene_.materials[i];
             if (!first[i] || !is_glass(material) || !is_partly_there(material, alphas[i])) continue;
-            warnings_.add("glass with alpha: where alpha takes it away, light passes straight on; transmission alone "
-                          "makes it clear",
-                          fmt::format("{}, alphaMode {}, alpha down to {:.3g}", triangle_name(*first[i]),
-                                      material.alpha == Material::Alpha::blend ? "BLEND" : "MASK", alphas[i]));
+            warnings_.add(
+                "glass with alpha: where alpha takes it away, light passes straight on; transmission alone "
+                "makes it clear",
+                fmt::format("{}, alphaMode {}, alpha down to {:.3g}", triangle_name(*first[i]),
+                            material.alpha == Material::Alpha::blend ? "BLEND" : "MASK", alphas[i]));
         }
     }
 
@@ -205,8 +208,8 @@ private:
             if (first >= last || part >= least_extent * whole) continue;
             if (emits(scene_.materials[scene_.triangles[first].material])) continue;
             warnings_.add("too small beside the scene: the light on it is blurred over all of it",
-                          fmt::format("{} is {:.3g} m across, the scene {:.3g} m",
-                                      triangle_name(std::uint32_t(first)), part, whole));
+                          fmt::format("{} is {:.3g} m across, the scene {:.3g} m", triangle_name(std::uint32_t(first)),
+                                      part, whole));
         }
     }
 
@@ -274,9 +277,10 @@ private:
 
     void check_intensity(const std::string& name, double value, const char* unit, double least, double most) {
         if (value == 0.0 || (value >= least && value <= most)) return;
-        warnings_.add("of the order of no common source of light: intensities are in W/sr, W/m^2 and W m^-2 sr^-1, "
-                      "not in candela, lux or nits",
-                      fmt::format("{} has {:.4g} {}", name, value, unit));
+        warnings_.add(
+            "of the order of no common source of light: intensities are in W/sr, W/m^2 and W m^-2 sr^-1, "
+            "not in candela, lux or nits",
+            fmt::format("{} has {:.4g} {}", name, value, unit));
     }
 
     /// Of the brightest pixel and channel.

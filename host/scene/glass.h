@@ -15,8 +15,7 @@ bool is_glass(const Material& material);
 bool is_solid_glass(const Material& material);
 
 /// Indices of the triangles whose material `matches`, in order.
-template <typename Predicate>
-std::vector<std::uint32_t> triangles_of(const Scene& scene, Predicate matches) {
+template <typename Predicate> std::vector<std::uint32_t> triangles_of(const Scene& scene, Predicate matches) {
     std::vector<bool> of_material(scene.materials.size());
     for (std::size_t i = 0; i < of_material.size(); ++i) of_material[i] = matches(scene.materials[i]);
     std::vector<std::uint32_t> triangles;

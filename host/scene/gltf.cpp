@@ -28,8 +28,8 @@ using nlohmann::json;
 /// materials are read from the JSON, and images, animations and the like can't trip the parser.
 tinygltf::Model parse_model(const GltfFile& file) {
     json document;
-    for (const char* member : {"asset", "scene", "scenes", "nodes", "meshes", "accessors", "bufferViews", "cameras",
-                               "extensions"}) {
+    for (const char* member :
+         {"asset", "scene", "scenes", "nodes", "meshes", "accessors", "bufferViews", "cameras", "extensions"}) {
         if (const auto found = file.document.find(member); found != file.document.end()) document[member] = *found;
     }
     // tinygltf 2.7 refuses indices without a bufferView, which glTF allows: they get one past the last of the file.

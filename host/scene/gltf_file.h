@@ -15,9 +15,9 @@ namespace vkcppm {
 constexpr std::size_t max_gltf_bytes = std::size_t(1) << 32;
 
 struct GltfBuffer {
-    std::size_t size = 0;             // byteLength
+    std::size_t size = 0;                                    // byteLength
     std::shared_ptr<const std::vector<std::uint8_t>> bytes;  // [size] or more; null where there is no such data
-    std::string absent;               // why there is none: an error once something is read from it
+    std::string absent;  // why there is none: an error once something is read from it
 };
 
 struct GltfFile {

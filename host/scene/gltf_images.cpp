@@ -58,9 +58,9 @@ std::optional<std::uint32_t> GltfImages::decode(std::span<const std::uint8_t> by
         }
         // Before there is memory for them: a header claims any size.
         if (size.pixels() > max_texels_per_byte * bytes.size()) {
-            bad_scene(file_.name, "the size of " + object, fmt::format("{} x {}", size.width, size.height),
-                      fmt::format("its {} bytes hold {} texels at most", bytes.size(),
-                                  max_texels_per_byte * bytes.size()));
+            bad_scene(
+                file_.name, "the size of " + object, fmt::format("{} x {}", size.width, size.height),
+                fmt::format("its {} bytes hold {} texels at most", bytes.size(), max_texels_per_byte * bytes.size()));
         }
         check_total(texels_ += size.pixels(), max_texels, "texels, with those of " + object, file_.name);
         images_.push_back({name, size, decode_picture(bytes)});

@@ -24,8 +24,8 @@ void read_cone(const tinygltf::SpotLight& spot, const std::string& object, Punct
         bad_scene(file, object + ".spot.outerConeAngle", fmt::to_string(spot.outerConeAngle),
                   "it must lie above 0, to pi/2");
     }
-    const double outer = clamped(spot.outerConeAngle, 0.0, right_angle + rounding, object + ".spot.outerConeAngle",
-                                 warnings);
+    const double outer =
+        clamped(spot.outerConeAngle, 0.0, right_angle + rounding, object + ".spot.outerConeAngle", warnings);
     light.outer_cone = std::min(outer, right_angle);
     light.inner_cone =
         clamped(spot.innerConeAngle, 0.0, widest_inner * light.outer_cone, object + ".spot.innerConeAngle", warnings);
@@ -48,8 +48,7 @@ std::optional<PunctualLight> read_light(const GltfFile& file, const tinygltf::Mo
                                          : PunctualLight::Kind::directional;
     light.name = source.name.empty() ? node.name : source.name;
     const glm::dvec3 color = source.color.empty() ? glm::dvec3(1.0) : glm::make_vec3(source.color.data());
-    light.intensity =
-        emitted(color, source.intensity, object + ".color", object + ".intensity", file.name, warnings);
+    light.intensity = emitted(color, source.intensity, object + ".color", object + ".intensity", file.name, warnings);
     light.position = glm::dvec3(to_world[3]);
     if (light.kind != PunctualLight::Kind::point) {
         light.direction = unit_or_zero(-glm::dvec3(to_world[2]));

@@ -46,8 +46,11 @@ bool is_nearest(const json& sampler) {
 class MaterialReader {
 public:
     MaterialReader(const GltfFile& file, std::size_t index, GltfImages& images, Warnings& warnings)
-        : file_(file), source_(file.document["materials"][index]), name_(fmt::format("materials[{}]", index)),
-          images_(images), warnings_(warnings) {}
+        : file_(file),
+          source_(file.document["materials"][index]),
+          name_(fmt::format("materials[{}]", index)),
+          images_(images),
+          warnings_(warnings) {}
 
     Material factors() const {
         const json& pbr = object_or_empty(source_, "pbrMetallicRoughness");

@@ -48,8 +48,13 @@ class MeshAdder {
 public:
     MeshAdder(const GltfFile& file, const tinygltf::Model& model, GltfAccessors& accessors, Scene& scene,
               Warnings& warnings)
-        : file_(file), model_(model), accessors_(accessors), primitives_(file, model, accessors, warnings),
-          scene_(scene), warnings_(warnings), file_materials_(scene.materials.size()) {}
+        : file_(file),
+          model_(model),
+          accessors_(accessors),
+          primitives_(file, model, accessors, warnings),
+          scene_(scene),
+          warnings_(warnings),
+          file_materials_(scene.materials.size()) {}
 
     void add(const std::vector<PlacedNode>& nodes) {
         check_totals(nodes);
@@ -116,9 +121,9 @@ private:
     void add_primitive(int node, int mesh, std::size_t index, const Placement& placement, VertexBlocks& blocks) {
         const tinygltf::Primitive& source = model_.meshes[mesh].primitives[index];
         if (!has_triangles(source)) {
-            warnings_.add(source.mode < TINYGLTF_MODE_TRIANGLES ? "points and lines are skipped"
-                                                                : "skipped, it has no POSITION",
-                          fmt::format("meshes[{}].primitives[{}]", mesh, index));
+            warnings_.add(
+                source.mode < TINYGLTF_MODE_TRIANGLES ? "points and lines are skipped" : "skipped, it has no POSITION",
+                fmt::format("meshes[{}].primitives[{}]", mesh, index));
             return;
         }
         const std::uint32_t material = material_index(source);
@@ -167,16 +172,18 @@ private:
 
     /// Another vertex like vertex i, with a normal of its own.
     std::uint32_t add_copy(std::size_t i, const glm::vec3& normal) {
-        return add_vertex({scene_.positions[i], normal, {element(scene_.uv[0], i), element(scene_.uv[1], i)},
-                           element(scene_.colors, i), element(scene_.tangents, i)});
+        return add_vertex({scene_.positions[i],
+                           normal,
+                           {element(scene_.uv[0], i), element(scene_.uv[1], i)},
+                           element(scene_.colors, i),
+                           element(scene_.tangents, i)});
     }
 
     /// Puts the vertices of a primitive with normals into the scene, once an instance, and returns the first.
     std::size_t first_vertex(const LocalPrimitive& local, int node, const Placement& placement, VertexBlocks& blocks) {
-        const auto [block, is_new] =
-            blocks.try_emplace({local.positions.get(), local.normals.get(), local.uv[0].get(), local.uv[1].get(),
-                                local.colors.get(), local.tangents.get()},
-                               scene_.positions.size());
+        const auto [block, is_new] = blocks.try_emplace({local.positions.get(), local.normals.get(), local.uv[0].get(),
+                                                         local.uv[1].get(), local.colors.get(), local.tangents.get()},
+                                                        scene_.positions.size());
         for (std::size_t i = 0; is_new && i < local.positions->size(); ++i) {
             Vertex vertex = placed(local, i, node, placement);
             vertex.normal = placement.normal((*local.normals)[i]);

@@ -152,7 +152,8 @@ std::vector<PlacedNode> place_nodes(const GltfFile& file, const tinygltf::Model&
         const int index = top.index;
         const tinygltf::Node& node = model.nodes[index];
         const glm::dmat4 to_world = top.to_world * local_transform(file, model, index, warnings);
-        check_finite(to_world, [&] { return fmt::format("nodes[{}]", index); }, file.name);
+        check_finite(
+            to_world, [&] { return fmt::format("nodes[{}]", index); }, file.name);
         placed.push_back({index, to_world});
         for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
             stack.push_back({*child, to_world});

@@ -15,8 +15,8 @@ std::optional<Placement> Placement::of(const glm::dmat4& to_world) {
     if (!(size > 0.0)) return std::nullopt;
     linear /= size;
     // Volume of the parallelepiped of unit edges: 0 is flat, whatever the scales are.
-    const double volume = glm::determinant(
-        glm::dmat3(glm::normalize(linear[0]), glm::normalize(linear[1]), glm::normalize(linear[2])));
+    const double volume =
+        glm::determinant(glm::dmat3(glm::normalize(linear[0]), glm::normalize(linear[1]), glm::normalize(linear[2])));
     if (!(std::abs(volume) > 1e-12)) return std::nullopt;
     // The cofactors are det(M) M^-T: no division, and the sign of the determinant turns them to M^-T.
     const double sign = volume < 0.0 ? -1.0 : 1.0;

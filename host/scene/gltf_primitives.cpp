@@ -76,8 +76,7 @@ const LocalPrimitive& PrimitiveReader::read(int node, int mesh, std::size_t inde
 /// The default weights of a mesh's morph targets: the node's, else the mesh's, else none.
 std::vector<double> PrimitiveReader::weights_of(int node, int mesh) const {
     const json& owner = file_.document["nodes"][node];
-    return (owner.contains("weights") ? owner : file_.document["meshes"][mesh])
-        .value("weights", std::vector<double>());
+    return (owner.contains("weights") ? owner : file_.document["meshes"][mesh]).value("weights", std::vector<double>());
 }
 
 LocalPrimitive PrimitiveReader::read_new(const tinygltf::Primitive& source, const std::string& object,
@@ -148,8 +147,8 @@ void PrimitiveReader::check_finite(const std::vector<glm::dvec3>& positions, con
                                    const std::string& object) const {
     for (std::size_t i = 0; i < positions.size(); ++i) {
         if (is_finite(positions[i])) continue;
-        bad_scene(file_.name, fmt::format("{} element {} (POSITION of {})", accessor, i, object),
-                  to_text(positions[i]), "a position must be finite");
+        bad_scene(file_.name, fmt::format("{} element {} (POSITION of {})", accessor, i, object), to_text(positions[i]),
+                  "a position must be finite");
     }
 }
 

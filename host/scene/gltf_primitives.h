@@ -24,12 +24,12 @@ using Corners = std::array<std::uint32_t, 3>;
 
 /// One primitive in the space of its mesh. Attributes that are missing or that nothing reads are null.
 struct LocalPrimitive {
-    SharedVectors<3> positions;            // finite
-    SharedVectors<3> normals;              // null: flat
-    std::array<SharedVectors<2>, 2> uv;    // not zeros, at most max_uv
-    SharedVectors<4> colors;               // 0..1
+    SharedVectors<3> positions;          // finite
+    SharedVectors<3> normals;            // null: flat
+    std::array<SharedVectors<2>, 2> uv;  // not zeros, at most max_uv
+    SharedVectors<4> colors;             // 0..1
     SharedVectors<4> tangents;
-    std::vector<Corners> triangles;        // into the above, in order and winding of the file
+    std::vector<Corners> triangles;  // into the above, in order and winding of the file
 };
 
 /// Whether a primitive makes triangles at all.

@@ -15,9 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-enum class Kind {
-    boolean, string, number, numbers, integer, index, indices, index_map, index_maps, object, objects
-};
+enum class Kind { boolean, string, number, numbers, integer, index, indices, index_map, index_maps, object, objects };
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double int_limit = std::numeric_limits<std::int32_t>::max();  // tinygltf holds these members as int
@@ -28,14 +26,14 @@ struct Field {
     const char* name;
     Kind kind;
     bool required = false;
-    std::span<const Field> fields{};  // object, objects: the members
-    const char* collection = "";      // index, indices, index_map(s): JSON pointer to the array referred to
-    std::size_t length = 0;           // numbers: how many; 0 is any number of them
-    double minimum = -infinity;       // integer
-    double maximum = infinity;        // integer
-    unsigned multiple = 1;            // integer: a multiple of this
+    std::span<const Field> fields{};              // object, objects: the members
+    const char* collection = "";                  // index, indices, index_map(s): JSON pointer to the array referred to
+    std::size_t length = 0;                       // numbers: how many; 0 is any number of them
+    double minimum = -infinity;                   // integer
+    double maximum = infinity;                    // integer
+    unsigned multiple = 1;                        // integer: a multiple of this
     std::span<const std::string_view> choices{};  // string
-    std::span<const int> values{};    // integer: any where empty
+    std::span<const int> values{};                // integer: any where empty
 };
 
 constexpr Field object(const char* name, std::span<const Field> fields, bool required = false) {
@@ -78,10 +76,10 @@ constexpr int min_filters[] = {9728, 9729, 9984, 9985, 9986, 9987};
 constexpr int wraps[] = {10497, 33071, 33648};
 
 constexpr std::string_view supported_extensions[] = {
-    "EXT_mesh_gpu_instancing",        "EXT_meshopt_compression", "KHR_lights_punctual",
-    "KHR_materials_clearcoat",        "KHR_materials_dispersion", "KHR_materials_emissive_strength",
-    "KHR_materials_ior",              "KHR_materials_specular",  "KHR_materials_transmission",
-    "KHR_materials_unlit",            "KHR_materials_volume",    "KHR_mesh_quantization",
+    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",  "KHR_lights_punctual",
+    "KHR_materials_clearcoat", "KHR_materials_dispersion", "KHR_materials_emissive_strength",
+    "KHR_materials_ior",       "KHR_materials_specular",   "KHR_materials_transmission",
+    "KHR_materials_unlit",     "KHR_materials_volume",     "KHR_mesh_quantization",
     "KHR_texture_transform",
 };
 
@@ -96,12 +94,9 @@ constexpr Field buffer_fields[] = {
 };
 
 constexpr Field meshopt_fields[] = {
-    index("buffer", "/buffers", true),
-    integer("byteOffset", 0, byte_limit),
-    integer("byteLength", 1, byte_limit, true),
-    integer("byteStride", 2, 256, true),
-    integer("count", 1, byte_limit, true),
-    choice("mode", meshopt_modes, true),
+    index("buffer", "/buffers", true),          integer("byteOffset", 0, byte_limit),
+    integer("byteLength", 1, byte_limit, true), integer("byteStride", 2, 256, true),
+    integer("count", 1, byte_limit, true),      choice("mode", meshopt_modes, true),
     choice("filter", meshopt_filters),
 };
 constexpr Field buffer_view_extension_fields[] = {object("EXT_meshopt_compression", meshopt_fields)};
@@ -167,10 +162,10 @@ constexpr Field node_fields[] = {
 
 constexpr Field scene_fields[] = {text("name"), {.name = "nodes", .kind = Kind::indices, .collection = "/nodes"}};
 
-constexpr Field perspective_fields[] = {
-    number("yfov", true), number("znear", true), number("zfar"), number("aspectRatio")};
-constexpr Field orthographic_fields[] = {
-    number("xmag", true), number("ymag", true), number("znear", true), number("zfar", true)};
+constexpr Field perspective_fields[] = {number("yfov", true), number("znear", true), number("zfar"),
+                                        number("aspectRatio")};
+constexpr Field orthographic_fields[] = {number("xmag", true), number("ymag", true), number("znear", true),
+                                         number("zfar", true)};
 constexpr Field camera_fields[] = {
     choice("type", camera_types, true),
     text("name"),
@@ -213,8 +208,8 @@ constexpr Field pbr_fields[] = {
     object("metallicRoughnessTexture", texture_info_fields),
 };
 constexpr Field emissive_strength_fields[] = {number("emissiveStrength")};
-constexpr Field transmission_fields[] = {
-    number("transmissionFactor"), object("transmissionTexture", texture_info_fields)};
+constexpr Field transmission_fields[] = {number("transmissionFactor"),
+                                         object("transmissionTexture", texture_info_fields)};
 constexpr Field clearcoat_fields[] = {
     number("clearcoatFactor"),
     object("clearcoatTexture", texture_info_fields),
@@ -261,12 +256,8 @@ constexpr Field material_fields[] = {
 
 constexpr Field spot_fields[] = {number("innerConeAngle"), number("outerConeAngle")};
 constexpr Field light_fields[] = {
-    text("name"),
-    choice("type", light_types, true),
-    numbers("color", 3),
-    number("intensity"),
-    number("range"),
-    object("spot", spot_fields),
+    text("name"),    choice("type", light_types, true), numbers("color", 3), number("intensity"),
+    number("range"), object("spot", spot_fields),
 };
 constexpr Field lights_fields[] = {objects("lights", light_fields, true)};
 constexpr Field root_extension_fields[] = {object("KHR_lights_punctual", lights_fields)};

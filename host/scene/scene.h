@@ -24,18 +24,18 @@ namespace vkcppm {
 struct TextureImage {
     std::string name;
     Extent size;
-    std::vector<std::uint8_t> rgba;        // [4 x pixels]
+    std::vector<std::uint8_t> rgba;  // [4 x pixels]
 };
 
 /// One use of an image by a material: where to look it up and how. uv' = matrix * uv + offset (KHR_texture_transform),
 /// v' downwards from the first row.
 struct Texture {
     enum class Wrap { repeat, mirrored_repeat, clamp_to_edge };
-    std::uint32_t image = 0;               // into Scene::images
-    std::uint32_t uv_set = 0;              // 0 or 1
+    std::uint32_t image = 0;   // into Scene::images
+    std::uint32_t uv_set = 0;  // 0 or 1
     Wrap wrap_s = Wrap::repeat;
     Wrap wrap_t = Wrap::repeat;
-    bool nearest = false;                  // magnification filter: the nearest texel, else bilinear
+    bool nearest = false;  // magnification filter: the nearest texel, else bilinear
     glm::mat2 matrix{1.0f};
     glm::vec2 offset{0.0f};
 };
@@ -44,29 +44,29 @@ struct Texture {
 struct Material {
     enum class Alpha { opaque, mask, blend };
     std::string name;
-    glm::vec3 base_color{1.0f};            // linear Rec. 709
-    float metallic = 1.0f;                 // 0..1
-    float roughness = 1.0f;                // 0..1, alpha = roughness^2
-    glm::vec3 emission{0.0f};              // emissiveFactor * emissiveStrength: radiance, W m^-2 sr^-1
-    float opacity = 1.0f;                  // alpha of baseColorFactor
+    glm::vec3 base_color{1.0f};  // linear Rec. 709
+    float metallic = 1.0f;       // 0..1
+    float roughness = 1.0f;      // 0..1, alpha = roughness^2
+    glm::vec3 emission{0.0f};    // emissiveFactor * emissiveStrength: radiance, W m^-2 sr^-1
+    float opacity = 1.0f;        // alpha of baseColorFactor
     Alpha alpha = Alpha::opaque;
-    float alpha_cutoff = 0.5f;             // mask: opaque where the alpha is at least this
-    float transmission = 0.0f;             // KHR_materials_transmission
-    float thickness = 0.0f;                // KHR_materials_volume thicknessFactor; > 0 means a solid volume
-    float ior = 1.5f;                      // KHR_materials_ior; >= 1 (0 means infinity in the extension)
-    float dispersion = 0.0f;               // KHR_materials_dispersion: 20 / Abbe number
-    float specular = 1.0f;                 // KHR_materials_specular specularFactor
-    glm::vec3 specular_color{1.0f};        // KHR_materials_specular specularColorFactor
-    float clearcoat = 0.0f;                // KHR_materials_clearcoat clearcoatFactor
-    float clearcoat_roughness = 0.0f;      // KHR_materials_clearcoat clearcoatRoughnessFactor
-    glm::vec3 attenuation_color{1.0f};     // KHR_materials_volume
+    float alpha_cutoff = 0.5f;          // mask: opaque where the alpha is at least this
+    float transmission = 0.0f;          // KHR_materials_transmission
+    float thickness = 0.0f;             // KHR_materials_volume thicknessFactor; > 0 means a solid volume
+    float ior = 1.5f;                   // KHR_materials_ior; >= 1 (0 means infinity in the extension)
+    float dispersion = 0.0f;            // KHR_materials_dispersion: 20 / Abbe number
+    float specular = 1.0f;              // KHR_materials_specular specularFactor
+    glm::vec3 specular_color{1.0f};     // KHR_materials_specular specularColorFactor
+    float clearcoat = 0.0f;             // KHR_materials_clearcoat clearcoatFactor
+    float clearcoat_roughness = 0.0f;   // KHR_materials_clearcoat clearcoatRoughnessFactor
+    glm::vec3 attenuation_color{1.0f};  // KHR_materials_volume
     float attenuation_distance = std::numeric_limits<float>::infinity();  // m
-    float normal_scale = 1.0f;             // of the normal texture's x and y
+    float normal_scale = 1.0f;                                            // of the normal texture's x and y
     float clearcoat_normal_scale = 1.0f;
-    bool double_sided = false;             // an emitter that is not emits from its front side alone
-    bool unlit = false;                    // KHR_materials_unlit: the camera sees base_color, nothing is lit by it
-    std::optional<Texture> base_color_texture;           // sRGB, alpha
-    std::optional<Texture> metallic_roughness_texture;   // g: roughness, b: metallic
+    bool double_sided = false;                  // an emitter that is not emits from its front side alone
+    bool unlit = false;                         // KHR_materials_unlit: the camera sees base_color, nothing is lit by it
+    std::optional<Texture> base_color_texture;  // sRGB, alpha
+    std::optional<Texture> metallic_roughness_texture;  // g: roughness, b: metallic
     std::optional<Texture> normal_texture;
     std::optional<Texture> emissive_texture;             // sRGB
     std::optional<Texture> transmission_texture;         // r
@@ -79,15 +79,15 @@ struct Material {
 
 /// Counter-clockwise seen from its front side: cross(p1 - p0, p2 - p0) is the front's normal.
 struct Triangle {
-    std::array<std::uint32_t, 3> vertex;   // into Scene::positions and Scene::normals
-    std::uint32_t material;                // into Scene::materials
+    std::array<std::uint32_t, 3> vertex;  // into Scene::positions and Scene::normals
+    std::uint32_t material;               // into Scene::materials
 };
 
 /// Where the triangles of a glTF node begin; they end where those of the next entry do.
 struct MeshNode {
-    std::uint32_t index = 0;               // into the file's nodes
+    std::uint32_t index = 0;  // into the file's nodes
     std::string name;
-    std::uint32_t first_triangle = 0;      // into Scene::triangles
+    std::uint32_t first_triangle = 0;  // into Scene::triangles
 };
 
 /// KHR_lights_punctual in world space. intensity: W/sr a channel (point, spot) or W/m^2 (directional).
@@ -95,46 +95,46 @@ struct PunctualLight {
     enum class Kind { point, spot, directional };
     Kind kind = Kind::point;
     std::string name;
-    glm::vec3 intensity{1.0f};             // color * intensity
-    glm::dvec3 position{0.0};              // m; unused by directional
-    glm::dvec3 direction{0.0, 0.0, -1.0};  // unit, where the light travels to; unused by point
-    double inner_cone = 0.0;               // rad, spot only
+    glm::vec3 intensity{1.0f};               // color * intensity
+    glm::dvec3 position{0.0};                // m; unused by directional
+    glm::dvec3 direction{0.0, 0.0, -1.0};    // unit, where the light travels to; unused by point
+    double inner_cone = 0.0;                 // rad, spot only
     double outer_cone = 0.7853981633974483;  // rad, spot only
 };
 
 /// A perspective camera that looks along its local -z with +y up.
 struct Camera {
     std::string name;
-    glm::dmat4 to_world{1.0};              // rigid: orthonormal columns and a position (scale removed)
-    double yfov = 0.7853981633974483;      // rad
-    std::optional<double> aspect;          // width / height, where the file states one
+    glm::dmat4 to_world{1.0};          // rigid: orthonormal columns and a position (scale removed)
+    double yfov = 0.7853981633974483;  // rad
+    std::optional<double> aspect;      // width / height, where the file states one
 };
 
 /// Light from infinitely far away. Row 0 is up (+y); the middle column is +x and columns go on towards +z:
 /// u = 1/2 + atan2(z, x) / (2 pi), v = acos(y) / pi for a unit direction (x, y, z) away from the scene.
 struct Environment {
     Extent size;
-    std::vector<glm::vec3> radiance;       // [pixels] W m^-2 sr^-1, first row on top; constant over a pixel
+    std::vector<glm::vec3> radiance;  // [pixels] W m^-2 sr^-1, first row on top; constant over a pixel
 };
 
 /// What a file holds, flattened to world space. `positions` and `normals` have one entry a vertex; the other vectors of
 /// vertices have one too, or are empty where no vertex of the file has any.
 struct Scene {
     std::filesystem::path file;
-    std::uint64_t hash = 0;                // FNV-1a of the file and of every buffer, image and environment it is lit by
-    std::vector<glm::dvec3> positions;     // [V] m
-    std::vector<glm::vec3> normals;        // [V] unit, shading
+    std::uint64_t hash = 0;             // FNV-1a of the file and of every buffer, image and environment it is lit by
+    std::vector<glm::dvec3> positions;  // [V] m
+    std::vector<glm::vec3> normals;     // [V] unit, shading
     std::array<std::vector<glm::vec2>, 2> uv;  // [V] texture coordinates of either set
-    std::vector<glm::vec4> colors;         // [V] linear, multiplies the base colour and its alpha
-    std::vector<glm::vec4> tangents;       // [V] unit, w: sign of the bitangent cross(normal, tangent); 0: none given
+    std::vector<glm::vec4> colors;             // [V] linear, multiplies the base colour and its alpha
+    std::vector<glm::vec4> tangents;  // [V] unit, w: sign of the bitangent cross(normal, tangent); 0: none given
     std::vector<Triangle> triangles;
-    std::vector<MeshNode> mesh_nodes;      // first_triangle ascends; empty in a scene that is of no file
-    std::vector<Material> materials;       // at least one where there are triangles
-    std::vector<TextureImage> images;      // those that materials use
+    std::vector<MeshNode> mesh_nodes;  // first_triangle ascends; empty in a scene that is of no file
+    std::vector<Material> materials;   // at least one where there are triangles
+    std::vector<TextureImage> images;  // those that materials use
     std::vector<PunctualLight> lights;
-    std::vector<Camera> cameras;           // those of the file, or one that frames the scene
+    std::vector<Camera> cameras;  // those of the file, or one that frames the scene
     std::optional<Environment> environment;
-    std::vector<std::string> warnings;     // one line each, for stderr
+    std::vector<std::string> warnings;  // one line each, for stderr
 };
 
 }  // namespace vkcppm

@@ -124,9 +124,8 @@ Buffer::Buffer(Device& device, std::string name, std::uint64_t bytes, Kind kind)
     if (impl.mapped) {
         std::memset(impl.mapped, 0, impl.bytes);
     } else {
-        run_once(device, "clearing a buffer", [&](vk::raii::CommandBuffer& commands) {
-            commands.fillBuffer(**impl.buffer, 0, VK_WHOLE_SIZE, 0);
-        });
+        run_once(device, "clearing a buffer",
+                 [&](vk::raii::CommandBuffer& commands) { commands.fillBuffer(**impl.buffer, 0, VK_WHOLE_SIZE, 0); });
     }
 }
 

@@ -32,30 +32,17 @@ public:
     std::uint64_t bytes() const;
 
     /// Writes `data` at the start. Asserts that it fits. The device must be idle.
-    template <typename T>
-    void upload(std::span<const T> data) {
-        write(std::as_bytes(data));
-    }
-    template <typename T>
-    void upload(const std::vector<T>& data) {
-        upload(std::span<const T>(data));
-    }
-    template <typename T>
-    void upload_value(const T& value) {
-        write(std::as_bytes(std::span<const T>(&value, 1)));
-    }
+    template <typename T> void upload(std::span<const T> data) { write(std::as_bytes(data)); }
+    template <typename T> void upload(const std::vector<T>& data) { upload(std::span<const T>(data)); }
+    template <typename T> void upload_value(const T& value) { write(std::as_bytes(std::span<const T>(&value, 1))); }
 
     /// Reads `count` values from the start. Asserts that there are as many. The device must be idle.
-    template <typename T>
-    std::vector<T> download(std::size_t count) const {
+    template <typename T> std::vector<T> download(std::size_t count) const {
         std::vector<T> data(count);
         read(std::as_writable_bytes(std::span<T>(data)));
         return data;
     }
-    template <typename T>
-    T download_value() const {
-        return download<T>(1).front();
-    }
+    template <typename T> T download_value() const { return download<T>(1).front(); }
 
     struct Impl;
     const Impl& impl() const { return *impl_; }

@@ -104,9 +104,9 @@ DeviceInfo describe(const vk::raii::PhysicalDevice& physical, std::uint32_t inde
     info.name = properties.deviceName.data();
     info.type = type_name(properties.deviceType);
     info.driver = fmt::format("{} {}", driver.driverName.data(), driver.driverInfo.data());
-    info.api_version = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(properties.apiVersion),
-                                   VK_API_VERSION_MINOR(properties.apiVersion),
-                                   VK_API_VERSION_PATCH(properties.apiVersion));
+    info.api_version =
+        fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(properties.apiVersion),
+                    VK_API_VERSION_MINOR(properties.apiVersion), VK_API_VERSION_PATCH(properties.apiVersion));
     info.uuid = uuid_text(chain.get<vk::PhysicalDeviceIDProperties>().deviceUUID);
     const auto memory = physical.getMemoryProperties();
     for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
@@ -199,18 +199,17 @@ Device::Device(const Options& options) : impl_(std::make_unique<Impl>()) {
     try {
         impl.instance.emplace(make_instance(impl.context, options.validate));
     } catch (const vk::LayerNotPresentError&) {
-        throw Error(ExitCode::no_device, fmt::format("validation was asked for but {} is not installed",
-                                                     validation_layer));
+        throw Error(ExitCode::no_device,
+                    fmt::format("validation was asked for but {} is not installed", validation_layer));
     } catch (const vk::SystemError& error) {
         throw Error(ExitCode::no_device, fmt::format("no Vulkan instance: {}", error.what()));
     }
     if (options.validate) {
         using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
         using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
-        impl.messenger.emplace(*impl.instance,
-                               vk::DebugUtilsMessengerCreateInfoEXT({}, Severity::eWarning | Severity::eError,
-                                                                    Type::eValidation | Type::ePerformance,
-                                                                    on_message, &impl));
+        impl.messenger.emplace(*impl.instance, vk::DebugUtilsMessengerCreateInfoEXT(
+                                                   {}, Severity::eWarning | Severity::eError,
+                                                   Type::eValidation | Type::ePerformance, on_message, &impl));
     }
 
     auto devices = enumerate(*impl.instance);

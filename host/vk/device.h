@@ -14,12 +14,12 @@ namespace vkcppm {
 struct DeviceInfo {
     std::uint32_t index = 0;
     std::string name;
-    std::string type;             // "cpu", "integrated", "discrete", "virtual", "other"
-    std::string driver;           // name and version
-    std::string api_version;      // "1.3.230"
-    std::string uuid;             // 32 hexadecimal digits in 8-4-4-4-12 form
+    std::string type;                // "cpu", "integrated", "discrete", "virtual", "other"
+    std::string driver;              // name and version
+    std::string api_version;         // "1.3.230"
+    std::string uuid;                // 32 hexadecimal digits in 8-4-4-4-12 form
     std::uint64_t memory_bytes = 0;  // largest device-local heap
-    std::string unusable;         // empty, or why the device cannot run the kernels
+    std::string unusable;            // empty, or why the device cannot run the kernels
 };
 
 /// All devices of all drivers, usable or not; empty where there is no Vulkan loader or driver.
@@ -28,9 +28,9 @@ std::vector<DeviceInfo> list_devices();
 class Device {
 public:
     struct Options {
-        std::string select;       // name (substring), index or "uuid:..."; empty: the fastest kind that is usable
-        bool validate = false;    // load the validation layer with synchronization checks; its errors are collected
-        bool cache = true;        // compiled kernels may be kept from run to run (app/pipeline_cache.h)
+        std::string select;     // name (substring), index or "uuid:..."; empty: the fastest kind that is usable
+        bool validate = false;  // load the validation layer with synchronization checks; its errors are collected
+        bool cache = true;      // compiled kernels may be kept from run to run (app/pipeline_cache.h)
     };
     /// Throws Error(no_device) where none is usable or none matches, with the devices that there are.
     explicit Device(const Options& options);

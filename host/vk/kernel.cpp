@@ -111,8 +111,7 @@ struct Commands::Impl {
     std::vector<const Kernel*> timed;
 };
 
-Commands::Commands(Device& device, const Bindings& bindings, std::uint32_t capacity)
-    : impl_(std::make_unique<Impl>()) {
+Commands::Commands(Device& device, const Bindings& bindings, std::uint32_t capacity) : impl_(std::make_unique<Impl>()) {
     guarded("creating a command buffer", [&] {
         auto& gpu = device.impl();
         impl_->device = &device;
@@ -156,8 +155,7 @@ void Commands::launch_indirect(const Kernel& kernel, const Buffer& groups, std::
 }
 
 /// Records what `dispatch` adds, timed, after all before it and before all after it.
-template <typename Dispatch>
-void Commands::record(const Kernel& kernel, const gpu::Launch& push, Dispatch dispatch) {
+template <typename Dispatch> void Commands::record(const Kernel& kernel, const gpu::Launch& push, Dispatch dispatch) {
     auto& commands = *impl_->commands;
     const bool timed = impl_->timed.size() < impl_->capacity;
     const std::uint32_t query = 2 * std::uint32_t(impl_->timed.size());
@@ -196,9 +194,9 @@ std::vector<Timing> Commands::finish() {
         gpu.device->resetFences(**impl_->fence);
         const std::uint32_t count = 2 * std::uint32_t(impl_->timed.size());
         if (count == 0) return;
-        const auto [result, stamps] = impl_->queries->getResults<std::uint64_t>(
-            0, count, count * sizeof(std::uint64_t), sizeof(std::uint64_t),
-            vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+        const auto [result, stamps] =
+            impl_->queries->getResults<std::uint64_t>(0, count, count * sizeof(std::uint64_t), sizeof(std::uint64_t),
+                                                      vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
         for (std::size_t i = 0; i < impl_->timed.size(); ++i) {
             const double ticks = double(stamps[2 * i + 1] - stamps[2 * i]);
             timings.push_back({impl_->timed[i], ticks * gpu.limits.timestampPeriod * 1e-9});

@@ -78,8 +78,7 @@ public:
     std::vector<Timing> finish();
 
 private:
-    template <typename Dispatch>
-    void record(const Kernel& kernel, const gpu::Launch& push, Dispatch dispatch);
+    template <typename Dispatch> void record(const Kernel& kernel, const gpu::Launch& push, Dispatch dispatch);
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

@@ -70,12 +70,16 @@ int main(int argc, char** argv) {
 
     bench.workers = make_workers(device, threads);
     const DeviceInfo& info = bench.workers.front().device->info();
-    nlohmann::ordered_json json = {{"device", info.name}, {"driver", info.driver}, {"runs", bench.runs},
+    nlohmann::ordered_json json = {{"device", info.name},
+                                   {"driver", info.driver},
+                                   {"runs", bench.runs},
                                    {"tables", nlohmann::ordered_json::object()}};
     fmt::print("Device: {}, {}. The least of {} runs.\n\n", info.name, info.driver, bench.runs);
     using Subject = Table (*)(const Bench&);
-    for (const auto& [name, subject] : {std::pair<std::string, Subject>("rays", bench_rays), {"bvh", bench_bvh},
-                                        {"gather", bench_gather}, {"iterations", bench_iterations},
+    for (const auto& [name, subject] : {std::pair<std::string, Subject>("rays", bench_rays),
+                                        {"bvh", bench_bvh},
+                                        {"gather", bench_gather},
+                                        {"iterations", bench_iterations},
                                         {"growth", bench_growth}}) {
         if (!only.empty() && std::ranges::find(only, name) == only.end()) continue;
         const Table table = subject(bench);

@@ -45,8 +45,7 @@ struct Seconds {
 };
 
 /// Wall and CPU seconds of work on the host.
-template <typename Work>
-Seconds time_of(const Work& work) {
+template <typename Work> Seconds time_of(const Work& work) {
     const double wall = wall_now(), cpu = cpu_now();
     work();
     return {wall_now() - wall, cpu_now() - cpu};

@@ -67,8 +67,8 @@ Table bench_bvh(const Bench& bench) {
          "line: triangles"},
         {}};
     for (const std::uint32_t triangles : {1000u, 50000u, 500000u}) {
-        for (const auto& [name, scene] : {std::pair("bumpy spheres", bumpy_room(triangles)),
-                                          std::pair("soup", soup(triangles))}) {
+        for (const auto& [name, scene] :
+             {std::pair("bumpy spheres", bumpy_room(triangles)), std::pair("soup", soup(triangles))}) {
             const FlatScene flat = flatten(scene);
             const Cost cost = cost_of(flat.bvh);
             const std::vector<std::array<glm::vec3, 3>> corners = in_order(flat);

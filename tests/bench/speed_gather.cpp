@@ -15,11 +15,11 @@ namespace {
 using std::numbers::pi;
 using Random = std::mt19937;
 
-constexpr std::uint32_t side = 256;          // pixels
+constexpr std::uint32_t side = 256;  // pixels
 constexpr std::uint32_t photon_count = 65536;
-constexpr double in_disc = 10.0;             // photons expected in a disc
-constexpr double spread = 1e3;               // largest radius over the smallest
-constexpr double reach = 0.7;                // of the photons about the middle of the plane, m
+constexpr double in_disc = 10.0;  // photons expected in a disc
+constexpr double spread = 1e3;    // largest radius over the smallest
+constexpr double reach = 0.7;     // of the photons about the middle of the plane, m
 
 using test::Disc;
 using test::polar;
@@ -38,7 +38,11 @@ struct Case {
 };
 
 constexpr Case cases[] = {
-    {"one radius", [](double u, double v, double) { return Disc{evenly(u, v), even_radius}; }, evenly},
+    {"one radius",
+     [](double u, double v, double) {
+         return Disc{evenly(u, v), even_radius};
+     },
+     evenly},
     {"as the density asks, 10^3", [](double u, double v, double) { return towards_middle.disc(u, v); },
      [](double u, double v) { return towards_middle.photon(u, v); }},
     // log-uniform; the mean of R^2, and so of photons, is that of one radius: (1 - spread^-2) / (2 log spread) max^2.
@@ -53,7 +57,8 @@ constexpr Case cases[] = {
 /// A field of a case with its times.
 class TimedField {
 public:
-    TimedField(Device& device, const Settings& settings, const Case& of) : TimedField(device, settings, of, Random(1)) {}
+    TimedField(Device& device, const Settings& settings, const Case& of)
+        : TimedField(device, settings, of, Random(1)) {}
 
     void iterate() {
         Report before, after;

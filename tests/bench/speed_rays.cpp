@@ -28,9 +28,9 @@ constexpr std::uint32_t stream_words[] = {
 #include "speed_stream.spv.inc"
 };
 
-constexpr std::uint32_t side = 512;           // of the camera's picture
-constexpr std::uint32_t rays_per_lane = 16;   // of speed_stream.comp
-constexpr std::uint32_t found_unfinished = 2; // TRACE_UNFINISHED of shaders/include/traverse.glsl
+constexpr std::uint32_t side = 512;            // of the camera's picture
+constexpr std::uint32_t rays_per_lane = 16;    // of speed_stream.comp
+constexpr std::uint32_t found_unfinished = 2;  // TRACE_UNFINISHED of shaders/include/traverse.glsl
 
 using Rays = std::vector<gpu::RayInput>;
 using Random = std::mt19937;
@@ -88,7 +88,9 @@ Rays random_rays(const FlatScene& flat, Random& random) {
 class Tracer {
 public:
     Tracer(Device& device, const FlatScene& flat, const Settings& settings, const Scene& scene)
-        : bindings_(device), commands_(device, bindings_, 1), buffers_(device, bindings_, flat),
+        : bindings_(device),
+          commands_(device, bindings_, 1),
+          buffers_(device, bindings_, flat),
           trace_(device, bindings_, "trace", trace_words, scene_specialization(flat.bvh, 0)),
           stream_(device, bindings_, "stream", stream_words, scene_specialization(flat.bvh, 0)) {
         params_ = scene_params(device, flat, scene.cameras.at(0), settings, false);
@@ -111,8 +113,9 @@ public:
 private:
     Seconds run(const Kernel& kernel, std::uint64_t invocations) {
         commands_.begin();
-        commands_.launch(kernel, invocations, {.iteration = 0, .round = rays_per_lane, .last_round = 0,
-                                               .offset = params_.step_budget, .count = count_});
+        commands_.launch(
+            kernel, invocations,
+            {.iteration = 0, .round = rays_per_lane, .last_round = 0, .offset = params_.step_budget, .count = count_});
         std::vector<Timing> timings;
         const Seconds host = time_of([&] { timings = commands_.finish(); });
         return {timings.front().seconds, host.cpu};
@@ -182,9 +185,9 @@ Table bench_rays(const Bench& bench) {
         }
         Random random(1);
         const Rays primary = primary_rays(flat.frame);
-        for (const auto& [kind, rays] : {std::pair("primary", primary),
-                                         std::pair("diffuse", diffuse_rays(primary, embree, flat, random)),
-                                         std::pair("random", random_rays(flat, random))}) {
+        for (const auto& [kind, rays] :
+             {std::pair("primary", primary), std::pair("diffuse", diffuse_rays(primary, embree, flat, random)),
+              std::pair("random", random_rays(flat, random))}) {
             struct Times {
                 Seconds eye, photon, embree;
             };

@@ -40,9 +40,7 @@ protected:
     std::string bytes(const std::string& name) const { return read_bytes(folder_ / name); }
     std::string done(const std::string& name) const {
         for (const auto& [key, value] : read_exr_attributes(folder_ / name)) {
-            if (key == "vkcppm.iterations_done") {
-                return value;
-            }
+            if (key == "vkcppm.iterations_done") return value;
         }
         return "";
     }
@@ -90,9 +88,7 @@ TEST_F(Checkpoint, SurvivesBeingKilledAtAnyMoment) {
         Process process(all, folder_.path());
         if (kill % 2 == 0) {
             ASSERT_TRUE(process.wait_for_message("iterations (")) << process.wait().err;
-            for (int i = 0; i < 20'000 && !there(kill == 0 ? ".ckpt" : ".part"); ++i) {
-                pause(50);
-            }
+            for (int i = 0; i < 20'000 && !there(kill == 0 ? ".ckpt" : ".part"); ++i) pause(50);
             pause(since_write(random));
         } else {
             pause(since_start(random));
@@ -138,9 +134,8 @@ TEST_P(CheckpointSignal, KeepsTheStateToo) {
     EXPECT_TRUE(bytes("resumed.exr") == bytes("whole.exr")) << "interrupted after " << cut << " of " << more;
 }
 
-INSTANTIATE_TEST_SUITE_P(, CheckpointSignal, testing::Values(SIGINT, SIGTERM), [](const auto& info) {
-    return info.param == SIGINT ? "SIGINT" : "SIGTERM";
-});
+INSTANTIATE_TEST_SUITE_P(, CheckpointSignal, testing::Values(SIGINT, SIGTERM),
+                         [](const auto& info) { return info.param == SIGINT ? "SIGINT" : "SIGTERM"; });
 
 TEST_F(Checkpoint, AFinishedRenderIsWrittenAgainAndTakesMoreIterations) {
     expect_done(render({"--iterations", "4", "-o", "whole.exr"}));
@@ -171,9 +166,7 @@ TEST_F(Checkpoint, OfAnotherDeviceIsTakenWithAWarning) {
     expect_done(render({"--iterations", "2", "-o", "a.exr", "--checkpoint", "a.ckpt"}));
     std::string file = bytes("a.ckpt"), device;
     for (const auto& [key, value] : read_exr_attributes(folder_ / "a.exr")) {
-        if (key == "vkcppm.device") {
-            device = value;
-        }
+        if (key == "vkcppm.device") device = value;
     }
     const std::size_t at = file.find(device);
     ASSERT_TRUE(!device.empty() && at != std::string::npos);
@@ -296,9 +289,7 @@ TEST_F(Checkpoint, HashesAreTheSameForAllThreadsAndWidths) {
         const std::vector<std::string> lines = lines_of(result.out);
         ASSERT_EQ(lines.size(), 19u) << result.out;
         EXPECT_TRUE(lines[0].starts_with("1 eye ") && lines[17].starts_with("3 update ")) << result.out;
-        if (expected.empty()) {
-            expected = result.out;
-        }
+        if (expected.empty()) expected = result.out;
         EXPECT_EQ(result.out, expected) << "under " << variable;
     }
 }

@@ -33,9 +33,7 @@ using namespace test;
 
 std::string shown(const Words& words) {
     std::string text = "vkcppm";
-    for (const std::string& word : words) {
-        text += " " + word;
-    }
+    for (const std::string& word : words) text += " " + word;
     return text;
 }
 
@@ -327,8 +325,8 @@ TEST_F(Cli, HostileFilesHaveTheirExitCodeAndTheirLine) {
         SCOPED_TRACE(hostile.file);
         const auto file = test::shared_file(std::string("hostile/") + hostile.file);
         ASSERT_TRUE(file);
-        const auto result = run({file->string(), "-o", "out.exr", "--size", "8x6", "--iterations", "2", "--photons",
-                                 "500", "--quiet"});
+        const auto result =
+            run({file->string(), "-o", "out.exr", "--size", "8x6", "--iterations", "2", "--photons", "500", "--quiet"});
         if (hostile.code == 0) {
             expect_done(result);
             EXPECT_FALSE(contains(result.err, "error: ")) << result.err;
@@ -359,8 +357,9 @@ TEST_F(Cli, AFullDiskIsNoticedAndLeavesNothing) {
     expect_failure(result, 73, {"good.exr", "File too large"}, "full disk");
     EXPECT_EQ(test::read_bytes(folder_ / "good.exr"), "good");
     EXPECT_EQ(test::names_in(folder_.path()), std::set<std::string>{"good.exr"});
-    const auto reference = shell("ulimit -f 4; exec \"$0\" reference \"$1\" --size 64x48 --samples 128 --iterations 32 "
-                                 "--photons 500 --quiet -o good.exr");
+    const auto reference = shell(
+        "ulimit -f 4; exec \"$0\" reference \"$1\" --size 64x48 --samples 128 --iterations 32 "
+        "--photons 500 --quiet -o good.exr");
     expect_failure(reference, 73, {"good.exr", "File too large"}, "a reference on a full disk");
     EXPECT_EQ(test::read_bytes(folder_ / "good.exr"), "good");
     EXPECT_EQ(test::names_in(folder_.path()), std::set<std::string>{"good.exr"});
@@ -412,13 +411,23 @@ TEST_F(Cli, WritesPictureViewAndStatistics) {
     EXPECT_TRUE(test::read_bytes(folder_ / "a.png").starts_with("\x89PNG\r\n"));
 
     const auto text = attributes("a.exr");
-    const std::map<std::string, std::string> expected = {
-        {"vkcppm.scene", "caustic.gltf"}, {"vkcppm.estimator", "cppm"},      {"vkcppm.seed", "3"},
-        {"vkcppm.iterations", "2"},       {"vkcppm.iterations_done", "2"},   {"vkcppm.photons", "500"},
-        {"vkcppm.size", "16x12"},         {"vkcppm.emitted_photons", "1000"}, {"vkcppm.max_depth", "64"},
-        {"vkcppm.knn", "10"},             {"vkcppm.k", "0.8"},               {"vkcppm.beta", "1.2"},
-        {"vkcppm.significance", "0.05"},  {"vkcppm.rings", "2"},             {"vkcppm.sectors", "6"},
-        {"vkcppm.aperture", "0.0"},       {"vkcppm.thin_glass", "thin"}};
+    const std::map<std::string, std::string> expected = {{"vkcppm.scene", "caustic.gltf"},
+                                                         {"vkcppm.estimator", "cppm"},
+                                                         {"vkcppm.seed", "3"},
+                                                         {"vkcppm.iterations", "2"},
+                                                         {"vkcppm.iterations_done", "2"},
+                                                         {"vkcppm.photons", "500"},
+                                                         {"vkcppm.size", "16x12"},
+                                                         {"vkcppm.emitted_photons", "1000"},
+                                                         {"vkcppm.max_depth", "64"},
+                                                         {"vkcppm.knn", "10"},
+                                                         {"vkcppm.k", "0.8"},
+                                                         {"vkcppm.beta", "1.2"},
+                                                         {"vkcppm.significance", "0.05"},
+                                                         {"vkcppm.rings", "2"},
+                                                         {"vkcppm.sectors", "6"},
+                                                         {"vkcppm.aperture", "0.0"},
+                                                         {"vkcppm.thin_glass", "thin"}};
     for (const auto& [name, value] : expected) {
         ASSERT_TRUE(text.contains(name)) << name;
         EXPECT_EQ(text.at(name), value) << name;
@@ -466,8 +475,8 @@ TEST_F(Cli, WritesPictureViewAndStatistics) {
 }
 
 TEST_F(Cli, AReferenceTellsItsErrorAndHowToMakeItAgain) {
-    const Words words{"reference", scene("caustic"), "--size", "16x12", "--samples", "128", "--iterations", "32",
-                      "--photons", "500", "--quiet", "--json", "--validate", "-o"};
+    const Words words{"reference", scene("caustic"), "--size", "16x12",   "--samples", "128",        "--iterations",
+                      "32",        "--photons",      "500",    "--quiet", "--json",    "--validate", "-o"};
     const auto with = [&](const Words& more) {
         Words all = words;
         all.insert(all.end(), more.begin(), more.end());
@@ -621,9 +630,7 @@ protected:
 
 std::vector<std::uint64_t> iterations_of(const Json& curve) {
     std::vector<std::uint64_t> iterations;
-    for (const Json& point : curve) {
-        iterations.push_back(point.at("iterations"));
-    }
+    for (const Json& point : curve) iterations.push_back(point.at("iterations"));
     return iterations;
 }
 
@@ -641,9 +648,7 @@ TEST_F(CliReference, TheCurveHoldsTheErrorsOfThePicturesOnTheWay) {
     const Json text = stats("a.json");
     const Json& curve = text.at("curve");
     ASSERT_EQ(iterations_of(curve), (std::vector<std::uint64_t>{1, 2, 4, 8, 11}));
-    for (const Json& point : curve) {
-        expect_same_errors(point, errors_after(point.at("iterations")));
-    }
+    for (const Json& point : curve) expect_same_errors(point, errors_after(point.at("iterations")));
     expect_same_errors(curve.back(), compared("a.exr"));
     EXPECT_TRUE(test::read_bytes(folder_ / "short.exr") == test::read_bytes(folder_ / "a.exr"))
         << "the picture, or its record, is another where it is measured";
@@ -674,9 +679,7 @@ TEST_F(CliReference, TheSameRenderHasTheSameCurve) {
     Json a = stats("a.json").at("curve"), b = stats("b.json").at("curve");
     ASSERT_EQ(iterations_of(a), (std::vector<std::uint64_t>{1, 2, 4, 8, 16, 32, 64, 70}));
     for (Json* curve : {&a, &b}) {
-        for (Json& point : *curve) {
-            point.erase("seconds");
-        }
+        for (Json& point : *curve) point.erase("seconds");
     }
     EXPECT_EQ(a, b);
 }
@@ -691,9 +694,7 @@ TEST_F(CliReference, TheCurveOfALimitedTimeEndsWithTheLastIteration) {
 TEST_F(CliReference, StopsAfterTheFirstIterationThatIsNearEnough) {
     // A render of 1, 2, 3, ... iterations each; the level is the error of the seventh.
     std::vector<double> errors;
-    for (std::uint64_t i = 1; i <= 7; ++i) {
-        errors.push_back(errors_after(i).at("smape_trimmed"));
-    }
+    for (std::uint64_t i = 1; i <= 7; ++i) errors.push_back(errors_after(i).at("smape_trimmed"));
     const double level = errors.back();
     const std::string errors_text = Json(errors).dump();
     ASSERT_EQ(std::count_if(errors.begin(), errors.end(), [&](double error) { return error <= level; }), 1)
@@ -711,11 +712,12 @@ TEST_F(CliReference, StopsAfterTheFirstIterationThatIsNearEnough) {
 }
 
 TEST_F(CliReference, SaysWhereTheErrorWasNotReached) {
-    const auto result = measured({"-o", "a.exr", "--stats", "a.json", "--iterations", "3", "--stop-at", "mse=1e-9",
-                                  "--quiet"});
+    const auto result =
+        measured({"-o", "a.exr", "--stats", "a.json", "--iterations", "3", "--stop-at", "mse=1e-9", "--quiet"});
     expect_done(result);
-    EXPECT_TRUE(contains(result.err, "warning: mse ") && contains(result.err, " after 3 iterations: --stop-at 1e-09 "
-                                                                              "was not reached"))
+    EXPECT_TRUE(contains(result.err, "warning: mse ") && contains(result.err,
+                                                                  " after 3 iterations: --stop-at 1e-09 "
+                                                                  "was not reached"))
         << result.err;
     EXPECT_EQ(stats("a.json").at("stop_at").at("reached"), false);
 }
@@ -753,9 +755,8 @@ TEST_P(CliSignal, KeepsWhatThereIs) {
     EXPECT_EQ(test::names_in(folder_.path()), (std::set<std::string>{"a.exr", "a.json"}));
 }
 
-INSTANTIATE_TEST_SUITE_P(, CliSignal, testing::Values(SIGINT, SIGTERM), [](const auto& info) {
-    return info.param == SIGINT ? "SIGINT" : "SIGTERM";
-});
+INSTANTIATE_TEST_SUITE_P(, CliSignal, testing::Values(SIGINT, SIGTERM),
+                         [](const auto& info) { return info.param == SIGINT ? "SIGINT" : "SIGTERM"; });
 
 TEST_F(Cli, AnInterruptedPictureIsThatOfAsManyIterations) {
     const Words words{scene("caustic"), "--size", "16x12", "--photons", "500", "-o"};
@@ -775,9 +776,7 @@ TEST_F(Cli, AnInterruptedPictureIsThatOfAsManyIterations) {
 
 TEST_F(Cli, TheValidationLayerHasNothingToSay) {
     const auto result = render({"--validate"});
-    if (result.exit_code == 69) {
-        GTEST_SKIP() << result.err;
-    }
+    if (result.exit_code == 69) GTEST_SKIP() << result.err;
     expect_done(result);
 }
 

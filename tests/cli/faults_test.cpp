@@ -48,13 +48,17 @@ const std::vector<Fault> faults = {
     {"LostAtTheFirstSubmission", "vkQueueSubmit 1 -4", 75, {"the device was lost while running kernels"}},
     {"LostInTheRender", "vkQueueSubmit 4 -4", 75, {"the device was lost while running kernels"}},
     {"LostWhileItIsWaitedFor", "vkWaitForFences 3 -4", 75, {"the device was lost while running kernels"}},
-    {"MemoryForTheFirstBuffer", "vkAllocateMemory 1 -2", 71,
+    {"MemoryForTheFirstBuffer",
+     "vkAllocateMemory 1 -2",
+     71,
      {"out of device memory while allocating buffer '", "bytes are allocated"}},
     {"MemoryForALaterBuffer", "vkAllocateMemory 20 -2", 71, {"out of device memory while allocating buffer '"}},
     {"HostMemoryOfTheDriver", "vkAllocateMemory 20 -1", 71, {"out of host memory while allocating buffer '"}},
     {"MemoryForAKernel", "vkCreateComputePipelines 3 -2", 71, {"out of device memory while creating kernel '"}},
     {"AnErrorWithoutAName", "vkCreateComputePipelines 1 -13", 70, {"Vulkan failed while creating kernel '"}},
-    {"ASmallDevice", "heap 0 200000", 71,
+    {"ASmallDevice",
+     "heap 0 200000",
+     71,
      {"buffer '", " bytes beside ", " in use, the memory of the device '", "has 200000"}},
 };
 
@@ -63,8 +67,8 @@ INSTANTIATE_TEST_SUITE_P(, Faults, testing::ValuesIn(faults),
 
 // A program that fails with the layer would pass the tests above whatever it did.
 TEST_F(FaultLayer, TheLayerItselfIsNoFault) {
-    expect_done(run_on("", {scene("slab"), "--size", "16x12", "--iterations", "2", "--photons", "500", "--quiet", "-o",
-                            "a.exr"}));
+    expect_done(run_on(
+        "", {scene("slab"), "--size", "16x12", "--iterations", "2", "--photons", "500", "--quiet", "-o", "a.exr"}));
     EXPECT_EQ(names_in(folder_.path()), std::set<std::string>{"a.exr"});
 }
 

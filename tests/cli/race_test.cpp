@@ -91,7 +91,9 @@ TEST_F(RaceCli, ThePictureIsThatOfARenderAndTheErrorThatOfCompare) {
     make_reference();
     ASSERT_EQ(race("out", {"--reference", "ref.exr", "--estimators", "appm,cppm"}).exit_code, 0);
     ASSERT_EQ(run({scene("torus"), "-o", "alone.exr", "--size", "32x24", "--photons", "1000", "--iterations", "5",
-                   "--estimator", "appm", "--quiet"}).exit_code, 0);
+                   "--estimator", "appm", "--quiet"})
+                  .exit_code,
+              0);
     EXPECT_EQ(read_exr(folder_ / "alone.exr"), read_exr(folder_ / "out/appm.exr"));
     const ExrAttributes alone = read_exr_attributes(folder_ / "alone.exr");
     EXPECT_EQ(read_exr_attributes(folder_ / "out/appm.exr"), alone) << "the same settings make it again";

@@ -117,7 +117,8 @@ class PathTracerClosedForm : public testing::TestWithParam<const char*> {};
 /// The scenes with a closed form whose light paths find; the bias is the rounding of float arithmetic.
 TEST_P(PathTracerClosedForm, MeanRadianceOfEveryRegion) {
     const Scene scene = project_scene(GetParam());
-    expect_regions(GetParam(), [&](const Settings& settings) { return trace_on_device(scene, settings); }, 2e-5);
+    expect_regions(
+        GetParam(), [&](const Settings& settings) { return trace_on_device(scene, settings); }, 2e-5);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, PathTracerClosedForm,
@@ -163,9 +164,9 @@ TEST(Reference, LeavesWhatIsNearItsLampToPhotons) {
     scene.materials[2].roughness = 0.4f;
     const Reference reference = refer(scene, settings, 64, 16384);
     EXPECT_GT(reference.caustic_share, 0.01);
-    const BlockComparison sum = compare_blocks({reference.mean, reference.standard_error},
-                                               trace_in_double(scene, settings, 1024),
-                                               {.side = 8, .level = 1e-4, .bias = 0.002});
+    const BlockComparison sum =
+        compare_blocks({reference.mean, reference.standard_error}, trace_in_double(scene, settings, 1024),
+                       {.side = 8, .level = 1e-4, .bias = 0.002});
     EXPECT_EQ(sum.differing, 0u) << "reference over paths, a block and channel:\n" << sum.table;
 }
 

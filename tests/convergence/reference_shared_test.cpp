@@ -16,17 +16,17 @@ namespace vkcppm::test {
 namespace {
 
 constexpr std::uint32_t samples = 512, side = 64, block = 8;
-constexpr double level = 0.001;            // of the whole picture, Sidak-corrected over blocks and channels
-constexpr double noise = 0.02;             // largest standard error of a block against its mean or the picture's
-constexpr double rounding = 1e-4;          // relative, of a block: the other renderer computes in floats
+constexpr double level = 0.001;    // of the whole picture, Sidak-corrected over blocks and channels
+constexpr double noise = 0.02;     // largest standard error of a block against its mean or the picture's
+constexpr double rounding = 1e-4;  // relative, of a block: the other renderer computes in floats
 
 /// Mean of a block of `size` x `size` pixels and the variance of that mean.
 struct Moments {
     double mean = 0.0, variance = 0.0;
 };
 
-Moments block_of(const Image& mean, const Image& standard_error, std::uint32_t bx, std::uint32_t by,
-                 std::uint32_t size, int channel) {
+Moments block_of(const Image& mean, const Image& standard_error, std::uint32_t bx, std::uint32_t by, std::uint32_t size,
+                 int channel) {
     Moments sum;
     for (std::uint32_t y = by * size; y < (by + 1) * size; ++y) {
         for (std::uint32_t x = bx * size; x < (bx + 1) * size; ++x) {
@@ -41,9 +41,7 @@ Moments block_of(const Image& mean, const Image& standard_error, std::uint32_t b
 TEST(ReferenceShared, CornellBoxOfRoughMetal) {
     const auto scene = shared_file("cornell-box.glb"), picture = shared_file("cornell-box_ref.exr"),
                error = shared_file("cornell-box_ref_stderr.exr");
-    if (!scene || !picture || !error) {
-        GTEST_SKIP() << "cornell-box is not there";
-    }
+    if (!scene || !picture || !error) GTEST_SKIP() << "cornell-box is not there";
     const Image other = read_exr(*picture), other_error = read_exr(*error);
     const auto paths =
         reference::path_trace(load_gltf(*scene), {.size = {side, side}, .samples = samples, .max_depth = 64});

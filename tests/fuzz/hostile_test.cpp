@@ -64,9 +64,7 @@ TEST(Hostile, MutationsOfASceneWithEverything) {
     expect_no_misbehaviour({folder / "everything.glb"}, 1500);
 }
 
-TEST(Hostile, MutationsOfPictures) {
-    expect_no_misbehaviour(files_of(source / "tests/fuzz/pictures"), 100);
-}
+TEST(Hostile, MutationsOfPictures) { expect_no_misbehaviour(files_of(source / "tests/fuzz/pictures"), 100); }
 
 TEST(Hostile, MutationsOfHostileFiles) {
     const auto folder = test::shared_file("hostile");

@@ -84,9 +84,8 @@ std::vector<Case> cases(float roughness) {
     from_both_sides("glass in part", [](Material& m) {
         m.transmission = 0.6f, m.thickness = 1.0f, m.metallic = 0.3f, m.specular = 1.0f;
     });
-    add("clearcoat over black", [=](Material& m) {
-        m.base_color = glm::vec3(0.0f), m.clearcoat = 1.0f, m.clearcoat_roughness = roughness;
-    });
+    add("clearcoat over black",
+        [=](Material& m) { m.base_color = glm::vec3(0.0f), m.clearcoat = 1.0f, m.clearcoat_roughness = roughness; });
     add("clearcoat over diffuse", [=](Material& m) { m.clearcoat = 0.8f, m.clearcoat_roughness = roughness; });
     add("clearcoat over a rougher metal",
         [=](Material& m) { m.metallic = 1.0f, m.clearcoat = 1.0f, m.clearcoat_roughness = 0.5f * roughness; });
@@ -188,13 +187,10 @@ protected:
 constexpr reference::Lobe reference_lobe[] = {reference::Lobe::diffuse, reference::Lobe::reflection,
                                               reference::Lobe::transmission, reference::Lobe::coat};
 
-std::string text(const glm::dvec3& v) {
-    return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z);
-}
+std::string text(const glm::dvec3& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z); }
 
 /// Calls check(case, angle, wo) with the case's name in every failure.
-template <typename Check>
-void for_views(Check check) {
+template <typename Check> void for_views(Check check) {
     for (const float roughness : roughnesses) {
         for (const Case& c : cases(roughness)) {
             for (const double angle : angles) {
@@ -307,9 +303,7 @@ TEST_F(BsdfLobes, WeightsAverageToTheAlbedo) {
             const Material& m = c.material;
             const bool bare =
                 m.clearcoat == 0.0f && (m.specular == 0.0f || m.metallic == 1.0f || m.transmission == 1.0f);
-            if (bare) {
-                EXPECT_LE(mean, 1.0 + 5.0 * error) << "more light leaves than arrives";
-            }
+            if (bare) EXPECT_LE(mean, 1.0 + 5.0 * error) << "more light leaves than arrives";
         }
     });
 }
@@ -385,8 +379,7 @@ public:
     }
 
     /// Gauss-Legendre rule of 7^2 points on each of 6^2 parts of a bin.
-    template <typename Density>
-    std::vector<double> integrals(Density density) const {
+    template <typename Density> std::vector<double> integrals(Density density) const {
         using Rule = boost::math::quadrature::gauss<double, 7>;
         constexpr int parts = 6;
         constexpr std::size_t points_a_bin = 7 * parts;

@@ -159,9 +159,7 @@ std::vector<Source> sources_of(const Scene& scene, const FlatScene& flat) {
     return sources;
 }
 
-double mean(const glm::dvec3& v) {
-    return (v.x + v.y + v.z) / 3.0;
-}
+double mean(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
 
 /// Cosine of the direction to `axis` and azimuth about it, in bins; any frame will do, azimuths are uniform.
 std::vector<std::uint64_t> direction_bins(const Source& source, const glm::dvec3& axis, double low, double high) {
@@ -179,8 +177,7 @@ std::vector<std::uint64_t> direction_bins(const Source& source, const glm::dvec3
 }
 
 /// Of ten bins of the cosine over [low, high], times eight azimuths, for the cumulative distribution `below`.
-template <typename Cumulative>
-std::vector<double> direction_density(double low, double high, Cumulative below) {
+template <typename Cumulative> std::vector<double> direction_density(double low, double high, Cumulative below) {
     std::vector<double> density;
     for (int i = 0; i < 10; ++i) {
         const double p = below(low + (high - low) * (i + 1) / 10.0) - below(low + (high - low) * i / 10.0);

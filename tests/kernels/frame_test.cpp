@@ -19,9 +19,7 @@ constexpr std::uint32_t frame_words[] = {
 #include "frame.spv.inc"
 };
 
-std::string text(const glm::vec3& v) {
-    return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x, v.y, v.z);
-}
+std::string text(const glm::vec3& v) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x, v.y, v.z); }
 
 double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
     return 2.0 * std::asin(std::min(1.0, 0.5 * glm::distance(glm::normalize(a), glm::normalize(b))));

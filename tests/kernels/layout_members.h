@@ -3,6 +3,7 @@
 #ifdef __cplusplus
 #pragma once
 #endif
+// clang-format off
 #define MEMBERS_BVH_NODE X(origin) X(exponents) X(low_x) X(low_y) X(low_z) X(high_x) X(high_y) X(high_z) \
     X(children) X(unused) X(leaves) X(parent_leaves)
 #define MEMBERS_TRIANGLE_GEOMETRY X(v0) X(error) X(e1) X(slack_u) X(e2) X(slack_v)
@@ -32,7 +33,8 @@
 #define MEMBERS_CURSOR X(cell) X(photon)
 #define MEMBERS_GRID X(origin) X(levels) X(dims) X(cell) X(inverse_cell) X(reach) X(first) X(entries)
 #define MEMBERS_STATUS X(blocked) X(completed) X(capacity) X(stuck) X(invalid) X(rays) \
-    X(stored) X(rays_high) X(levels) X(searches) X(search_groups) X(photons) X(radius_histogram) X(photon_histogram) X(photon_histogram_high)
+    X(stored) X(rays_high) X(levels) X(searches) X(search_groups) X(photons) X(radius_histogram) X(photon_histogram) \
+    X(photon_histogram_high)
 #define MEMBERS_PARAMS \
     X(eye) X(width) X(right) X(height) X(up) X(seed) X(forward) X(pixel_radius) X(bounds_low) X(photons) \
     X(bounds_high) X(photons_per_lane) X(photon_lanes) X(photon_capacity) X(bounds_radius) X(max_depth) X(light_count) X(near_lights) X(light_power) X(environment) \

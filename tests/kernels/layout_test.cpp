@@ -17,30 +17,20 @@ constexpr std::uint32_t layout_words[] = {
 #include "layout.spv.inc"
 };
 
-template <typename Visit>
-void scalars(float& x, Visit visit) {
-    visit(x);
-}
-template <typename Visit>
-void scalars(std::uint32_t& x, Visit visit) {
-    visit(x);
-}
+template <typename Visit> void scalars(float& x, Visit visit) { visit(x); }
+template <typename Visit> void scalars(std::uint32_t& x, Visit visit) { visit(x); }
 template <glm::length_t L, typename T, glm::qualifier Q, typename Visit>
 void scalars(glm::vec<L, T, Q>& v, Visit visit) {
     for (glm::length_t c = 0; c < L; ++c) visit(v[c]);
 }
-template <typename T, std::size_t N, typename Visit>
-void scalars(T (&array)[N], Visit visit) {
+template <typename T, std::size_t N, typename Visit> void scalars(T (&array)[N], Visit visit) {
     for (T& element : array) scalars(element, visit);
 }
 
 // One overload a struct: visits its scalars in order.
 #define X(member) scalars(value.member, visit);
-#define VISITOR(Struct, MEMBERS)                        \
-    template <typename Visit>                           \
-    void each_scalar(gpu::Struct& value, Visit visit) { \
-        MEMBERS                                         \
-    }
+#define VISITOR(Struct, MEMBERS) \
+    template <typename Visit> void each_scalar(gpu::Struct& value, Visit visit) { MEMBERS }
 VISITOR(BvhNode, MEMBERS_BVH_NODE)
 VISITOR(TriangleGeometry, MEMBERS_TRIANGLE_GEOMETRY)
 VISITOR(TriangleShading, MEMBERS_TRIANGLE_SHADING)
@@ -48,10 +38,7 @@ VISITOR(SurfaceMaterial, MEMBERS_SURFACE_MATERIAL)
 VISITOR(TextureLookup, MEMBERS_TEXTURE_LOOKUP)
 VISITOR(Light, MEMBERS_LIGHT)
 VISITOR(LightRay, MEMBERS_LIGHT_RAY)
-template <typename Visit>
-void scalars(gpu::LightRay& ray, Visit visit) {
-    each_scalar(ray, visit);
-}
+template <typename Visit> void scalars(gpu::LightRay& ray, Visit visit) { each_scalar(ray, visit); }
 VISITOR(Photon, MEMBERS_PHOTON)
 VISITOR(PhotonFlux, MEMBERS_PHOTON_FLUX)
 VISITOR(HitPosition, MEMBERS_HIT_POSITION)
@@ -71,8 +58,7 @@ VISITOR(Params, MEMBERS_PARAMS)
 VISITOR(Launch, MEMBERS_LAUNCH)
 
 /// A struct whose scalars all differ; `element` tells elements of an array apart. Small enough to be exact as floats.
-template <typename S>
-S distinct(std::uint32_t element) {
+template <typename S> S distinct(std::uint32_t element) {
     S value{};
     std::uint32_t next = 1000 * (element + 1);
     each_scalar(value, [&](auto& scalar) { scalar = std::remove_reference_t<decltype(scalar)>(next += 3); });
@@ -80,8 +66,7 @@ S distinct(std::uint32_t element) {
 }
 
 /// What the probe makes of it: the n-th scalar grows by n.
-template <typename S>
-S bumped(S value) {
+template <typename S> S bumped(S value) {
     std::uint32_t ordinal = 0;
     each_scalar(value, [&](auto& scalar) { scalar += std::remove_reference_t<decltype(scalar)>(++ordinal); });
     return value;
@@ -89,13 +74,11 @@ S bumped(S value) {
 
 class Layout : public GpuTest {
 protected:
-    template <typename S>
-    void upload(std::uint32_t binding) {
+    template <typename S> void upload(std::uint32_t binding) {
         probe_.input(binding, std::vector<S>{distinct<S>(0), distinct<S>(1), S{}, S{}, S{}});
     }
 
-    template <typename S>
-    void expect_equal(const char* name, S got, S want) {
+    template <typename S> void expect_equal(const char* name, S got, S want) {
         std::vector<double> wanted;
         each_scalar(want, [&](auto& scalar) { wanted.push_back(double(scalar)); });
         std::size_t ordinal = 0;
@@ -105,8 +88,7 @@ protected:
         });
     }
 
-    template <typename S>
-    void check(std::uint32_t binding, const char* name) {
+    template <typename S> void check(std::uint32_t binding, const char* name) {
         std::size_t listed = 0;
         S value{};
         each_scalar(value, [&](auto&) { ++listed; });
@@ -121,12 +103,14 @@ protected:
     Probe probe_{"layout", layout_words};
 };
 
+// clang-format off
 #define FOR_STRUCTS(F)                                                                                                \
     F(0, BvhNode)                                                                                                     \
     F(1, TriangleGeometry) F(2, TriangleShading) F(3, SurfaceMaterial) F(4, Light) F(5, Photon) F(6, PhotonFlux)      \
         F(7, HitPosition) F(8, HitWeight) F(9, HitEmission) F(10, Gathered) F(11, PixelState) F(12, Aovs) F(13, Film) \
             F(14, PathState) F(15, Cursor) F(16, Grid) F(17, Status) F(18, Params) F(19, Launch)                      \
                 F(20, TextureLookup) F(21, HitSurface) F(22, TraceState) F(23, LightRay)
+// clang-format on
 
 TEST_F(Layout, EveryMemberStandsWhereTheHostPutsIt) {
 #define UPLOAD(index, Struct) upload<gpu::Struct>(BIND_FIRST_STORAGE + index);

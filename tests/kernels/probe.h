@@ -20,29 +20,29 @@ struct RngKey {
     uint dimension;
 };
 struct RngSample {
-    uvec4 hash;          // pcg4d of (seed, iteration, stream, path)
-    vec4 random;         // random4
-    float stratified;    // of (seed, iteration, path, dimension)
+    uvec4 hash;        // pcg4d of (seed, iteration, stream, path)
+    vec4 random;       // random4
+    float stratified;  // of (seed, iteration, path, dimension)
 };
 
 struct FrameSample {
-    uint word;           // packed
+    uint word;  // packed
     vec3 unpacked;
     vec3 tangent;
     vec3 bitangent;
-    vec3 tilted;         // from_frame of (0.6, 0.0, 0.8)
+    vec3 tilted;  // from_frame of (0.6, 0.0, 0.8)
 };
 
 struct WarpInput {
     vec2 u;
-    float inner;         // cosines of a spot light's cones
+    float inner;  // cosines of a spot light's cones
     float outer;
 };
 struct WarpOutput {
     vec3 cosine;
     vec2 triangle;
     vec2 disc;
-    vec3 sphere;         // sample_azimuth of a uniform cosine
+    vec3 sphere;  // sample_azimuth of a uniform cosine
     float spot;
 };
 
@@ -54,68 +54,68 @@ struct EmitOutput {
     vec3 origin;
     vec3 direction;
     vec3 power;
-    uint kind;           // LIGHT_*
-    vec3 radiance;       // of the environment, against the direction
+    uint kind;      // LIGHT_*
+    vec3 radiance;  // of the environment, against the direction
 };
 
 struct ScatterInput {
     vec3 direction;
     vec3 normal;
     vec3 geometric;
-    float u;             // chooses the lobe
+    float u;  // chooses the lobe
     uint front;
     uint material;
     uint radiance;
 };
 struct ScatterOutput {
     vec3 direction;
-    vec3 factor;         // of the lobe that was followed
-    uint lobe;           // LOBE_*
-    float probability;   // of that lobe
+    vec3 factor;        // of the lobe that was followed
+    uint lobe;          // LOBE_*
+    float probability;  // of that lobe
     float density;
-    float reflectance;   // fresnel_dielectric
+    float reflectance;  // fresnel_dielectric
     float cosine_t;
-    vec3 facet;          // facet_reflectance
+    vec3 facet;  // facet_reflectance
 };
 
 struct BsdfView {
-    vec3 outgoing;       // unit, on the side of the normals
+    vec3 outgoing;  // unit, on the side of the normals
     vec3 geometric;
     vec3 normal;
     vec3 clearcoat_normal;
     uint material;
     uint front;
-    uint lobe;           // to follow; LOBE_NONE: each by its probability
+    uint lobe;  // to follow; LOBE_NONE: each by its probability
     uint radiance;
 };
 struct BsdfInput {
-    vec3 incoming;       // unit, away from the surface
+    vec3 incoming;  // unit, away from the surface
     vec3 u;
 };
 struct BsdfOutput {
-    uint lobe;           // LOBE_*
-    float probability;   // of that lobe
+    uint lobe;          // LOBE_*
+    float probability;  // of that lobe
     vec3 direction;
-    vec3 weight;         // of sample_lobe
+    vec3 weight;  // of sample_lobe
     float density;
-    float followed;      // followed_weight
-    vec3 value;          // rough_bsdf of all light
-    vec3 gathered;       // of light that following the lobe finds, too
+    float followed;  // followed_weight
+    vec3 value;      // rough_bsdf of all light
+    vec3 gathered;   // of light that following the lobe finds, too
 };
 
 struct TextureInput {
     vec4 coordinates;
-    uint texture;        // 1 + index of a TextureLookup
+    uint texture;  // 1 + index of a TextureLookup
     uint triangle;
     vec2 barycentric;
-    vec3 direction;      // towards the surface
+    vec3 direction;  // towards the surface
 };
 struct TextureOutput {
-    vec4 value;          // of the texture, or base colour and opacity
+    vec4 value;  // of the texture, or base colour and opacity
     vec3 emission;
-    vec4 metal;          // metallic, roughness, transmission, specular
+    vec4 metal;  // metallic, roughness, transmission, specular
     vec3 specular_color;
-    vec2 clearcoat;      // and its roughness
+    vec2 clearcoat;  // and its roughness
     float coverage;
     vec3 geometric;
     vec3 normal;
@@ -123,12 +123,12 @@ struct TextureOutput {
 };
 
 struct WavelengthInput {
-    float wavelength;    // micrometres
+    float wavelength;  // micrometres
     float ior;
     float cauchy;
 };
 struct WavelengthOutput {
-    float drawn;         // of path i
+    float drawn;  // of path i
     vec3 weight;
     float index;
 };
@@ -138,11 +138,11 @@ struct RayInput {
     vec3 direction;
 };
 struct RayOutput {
-    uint found;          // TRACE_*
+    uint found;  // TRACE_*
     float t;
     uint triangle;
     vec2 barycentric;
-    int steps;           // spent
+    int steps;  // spent
 };
 struct SurfaceOutput {
     uint found;
@@ -153,8 +153,8 @@ struct SurfaceOutput {
     float error;
     uint front;
     uint material;
-    vec3 outside;        // leave() against the ray
-    vec3 inside;         // leave() along the ray
+    vec3 outside;  // leave() against the ray
+    vec3 inside;   // leave() along the ray
 };
 
 #ifdef __cplusplus

@@ -42,7 +42,7 @@ bool go_on(const RaceProgress&) { return true; }
 class Race : public test::GpuTest {};
 
 TEST_F(Race, SeedsGiveAllEstimatorsTheSamePhotonsAndFirstRadii) {
-    std::vector<float> nearest;       // [knn x pixels] squared distances of the photons that give the first radius
+    std::vector<float> nearest;          // [knn x pixels] squared distances of the photons that give the first radius
     std::vector<std::uint32_t> photons;  // of the fifth iteration, in the order of the paths: places, directions, power
     for (const char* name : {"cppm", "sppm", "sppm-kz", "appm", "ftest", "cppm-fold"}) {
         SCOPED_TRACE(name);
@@ -128,9 +128,7 @@ TEST_F(Race, TurnsGoToWhoeverIsBehind) {
     const RaceSettings race = resolve_race(race_of({"cppm", "sppm"}), scene);
     std::vector<std::size_t> snapshots[2];
     run_race(scene, race, black(), test::plain_device(), [&](const RaceProgress& progress) {
-        for (int e = 0; e < 2; ++e) {
-            snapshots[e].push_back(progress.runs[std::size_t(e)].curves.back().size());
-        }
+        for (int e = 0; e < 2; ++e) snapshots[e].push_back(progress.runs[std::size_t(e)].curves.back().size());
         EXPECT_GE(progress.done, 0.1);
         EXPECT_LE(progress.done, 1.0);
         return true;
@@ -198,8 +196,8 @@ TEST_F(Race, WhatDoesNotFitTheDeviceTogetherIsToldWithTheEntrant) {
     const Scene scene = test::project_scene("torus");
     RaceSettings race = race_of({"cppm", "sppm"});
     race.entrants[1].settings.size = Extent{16384, 8192};
-    const auto error = test::thrown_by(
-        [&] { run_race(scene, resolve_race(race, scene), black(), test::plain_device(), go_on); });
+    const auto error =
+        test::thrown_by([&] { run_race(scene, resolve_race(race, scene), black(), test::plain_device(), go_on); });
     ASSERT_TRUE(error);
     EXPECT_EQ(error->code(), ExitCode::out_of_device_memory);
     for (const char* told : {"entrant 'sppm'", "buffer '", "hold", "bytes"}) {

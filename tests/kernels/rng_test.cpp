@@ -48,8 +48,7 @@ protected:
 };
 
 /// Counts of pairs (a, b) in [0, 1)^2 over 16 x 16 bins.
-template <typename Pair>
-std::vector<std::uint64_t> bins_of_pairs(std::size_t count, Pair pair) {
+template <typename Pair> std::vector<std::uint64_t> bins_of_pairs(std::size_t count, Pair pair) {
     std::vector<std::uint64_t> bins(256);
     for (std::size_t i = 0; i < count; ++i) {
         const auto [a, b] = pair(i);

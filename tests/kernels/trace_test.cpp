@@ -81,9 +81,7 @@ struct Answer {
     std::uint32_t triangle = 0;
 };
 
-std::string text(const Answer& a) {
-    return a.hit ? fmt::format("t {:.9g} in triangle {}", a.t, a.triangle) : "a miss";
-}
+std::string text(const Answer& a) { return a.hit ? fmt::format("t {:.9g} in triangle {}", a.t, a.triangle) : "a miss"; }
 
 /// True where the answers say the same, or where the ray passes so close to an edge of one of their triangles that
 /// rounding decides; counts the latter in `undecided`.
@@ -424,9 +422,7 @@ TEST_F(Trace, OutOfStepsSaysSo) {
             ASSERT_EQ(cut[i].triangle, whole[i].triangle) << "ray " << i << " with " << steps << " steps";
             ASSERT_LE(cut[i].steps, int(steps + flat.bvh.stack) + 10) << "ray " << i;
         }
-        if (steps <= 1) {
-            EXPECT_EQ(unfinished, rays.size()) << steps << " steps";
-        }
+        if (steps <= 1) EXPECT_EQ(unfinished, rays.size()) << steps << " steps";
     }
 }
 

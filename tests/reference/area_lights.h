@@ -22,7 +22,7 @@ public:
     struct Point {
         std::uint32_t triangle;
         glm::dvec3 barycentric;
-        glm::dvec3 position;               // m
+        glm::dvec3 position;  // m
     };
     Point sample(std::mt19937_64& random) const;
 

@@ -17,30 +17,18 @@ using std::numbers::pi;
 constexpr double coat_reflectance = 0.04;  // KHR_materials_clearcoat: index 1.5
 constexpr double least_albedo = 0.05;      // of a rough lobe in the choice: its estimate may be far off
 
-double brightest(const glm::dvec3& v) {
-    return std::max({v.x, v.y, v.z});
-}
+double brightest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
 
-double mean(const glm::dvec3& v) {
-    return (v.x + v.y + v.z) / 3.0;
-}
+double mean(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
 
-double cosine(const glm::dvec3& a, const glm::dvec3& b) {
-    return std::clamp(glm::dot(a, b), 0.0, 1.0);
-}
+double cosine(const glm::dvec3& a, const glm::dvec3& b) { return std::clamp(glm::dot(a, b), 0.0, 1.0); }
 
-double absolute_cosine(const glm::dvec3& a, const glm::dvec3& b) {
-    return std::min(std::abs(glm::dot(a, b)), 1.0);
-}
+double absolute_cosine(const glm::dvec3& a, const glm::dvec3& b) { return std::min(std::abs(glm::dot(a, b)), 1.0); }
 
 /// Mirrored at the plane of `normal`.
-glm::dvec3 mirrored(const glm::dvec3& w, const glm::dvec3& normal) {
-    return w - 2.0 * glm::dot(w, normal) * normal;
-}
+glm::dvec3 mirrored(const glm::dvec3& w, const glm::dvec3& normal) { return w - 2.0 * glm::dot(w, normal) * normal; }
 
-glm::dvec3 reflected(const glm::dvec3& wo, const glm::dvec3& h) {
-    return 2.0 * glm::dot(wo, h) * h - wo;
-}
+glm::dvec3 reflected(const glm::dvec3& wo, const glm::dvec3& h) { return 2.0 * glm::dot(wo, h) * h - wo; }
 
 struct Frame {
     glm::dvec3 x, y, z;
@@ -59,18 +47,14 @@ struct Frame {
 /// where alpha is small.
 double ggx(double alpha, const glm::dvec3& normal, const glm::dvec3& h) {
     const double c = glm::dot(normal, h);
-    if (c <= 0.0) {
-        return 0.0;
-    }
+    if (c <= 0.0) return 0.0;
     const glm::dvec3 across = glm::cross(normal, h);
     const double a2 = alpha * alpha;
     const double denominator = c * c * a2 + glm::dot(across, across);
     return a2 / (pi * denominator * denominator);
 }
 
-double masking_root(double alpha, double c) {
-    return std::sqrt(alpha * alpha + (1.0 - alpha * alpha) * c * c);
-}
+double masking_root(double alpha, double c) { return std::sqrt(alpha * alpha + (1.0 - alpha * alpha) * c * c); }
 
 /// V of the absolute cosines, 1/sr.
 double visibility(double alpha, double co, double ci) {
@@ -80,9 +64,7 @@ double visibility(double alpha, double co, double ci) {
 /// Density of visible normals, G1(wo) (wo.h) D(h) / (n.wo).
 double visible_normal_pdf(double alpha, const glm::dvec3& normal, const glm::dvec3& wo, const glm::dvec3& h) {
     const double co = glm::dot(wo, normal), ch = glm::dot(wo, h);
-    if (co <= 0.0 || ch <= 0.0) {
-        return 0.0;
-    }
+    if (co <= 0.0 || ch <= 0.0) return 0.0;
     return 2.0 * ch * ggx(alpha, normal, h) / (co + masking_root(alpha, co));
 }
 
@@ -113,9 +95,7 @@ glm::dvec3 sample_cosine(const glm::dvec3& normal, std::mt19937_64& random) {
 
 }  // namespace
 
-double uniform(std::mt19937_64& random) {
-    return static_cast<double>(random() >> 11) * 0x1p-53;
-}
+double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
 bool Bsdf::is_delta(Lobe lobe) const {
     switch (lobe) {
@@ -145,9 +125,7 @@ bool Bsdf::only_deltas() const {
 }
 
 double Bsdf::fresnel_exact(double cosine) const {
-    if (ior == 0.0) {
-        return 1.0;
-    }
+    if (ior == 0.0) return 1.0;
     return ior == 1.0 ? 0.0 : fresnel_dielectric(cosine, thin || front ? ior : 1.0 / ior);
 }
 
@@ -158,15 +136,9 @@ glm::dvec3 Bsdf::fresnel_coat(double cosine) const {
 
 glm::dvec3 Bsdf::reflectance(double cosine) const {
     glm::dvec3 sum(0.0);
-    if (metallic > 0.0) {
-        sum += metallic * fresnel_metal(base_color, cosine);
-    }
-    if (metallic < 1.0 && transmission < 1.0) {
-        sum += (1.0 - metallic) * (1.0 - transmission) * fresnel_coat(cosine);
-    }
-    if (transmits()) {
-        sum += (1.0 - metallic) * transmission * fresnel_exact(cosine);
-    }
+    if (metallic > 0.0) sum += metallic * fresnel_metal(base_color, cosine);
+    if (metallic < 1.0 && transmission < 1.0) sum += (1.0 - metallic) * (1.0 - transmission) * fresnel_coat(cosine);
+    if (transmits()) sum += (1.0 - metallic) * transmission * fresnel_exact(cosine);
     return sum;
 }
 
@@ -176,26 +148,18 @@ double Bsdf::below_coat(double cosine) const {
 
 /// Through a facet of normal h, on the side of wo; none where the reflection is total.
 std::optional<glm::dvec3> Bsdf::refract(const glm::dvec3& wo, const glm::dvec3& h) const {
-    if (refraction_ior == 1.0) {
-        return -wo;
-    }
+    if (refraction_ior == 1.0) return -wo;
     const double ratio = front ? 1.0 / refraction_ior : refraction_ior;  // eta_o / eta_i
     const double c = glm::dot(wo, h);
     const double squared = 1.0 - ratio * ratio * std::max(0.0, 1.0 - c * c);
-    if (squared <= 0.0) {
-        return std::nullopt;
-    }
+    if (squared <= 0.0) return std::nullopt;
     return glm::normalize(ratio * (c * h - wo) - std::sqrt(squared) * h);
 }
 
 /// Of reflection, of reflection mirrored at the plane (thin transmission), or of refraction (Walter et al. 2007).
 glm::dvec3 Bsdf::half_vector(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi) const {
-    if (lobe != Lobe::transmission) {
-        return glm::normalize(wo + wi);
-    }
-    if (thin) {
-        return glm::normalize(wo + mirrored(wi, normal));
-    }
+    if (lobe != Lobe::transmission) return glm::normalize(wo + wi);
+    if (thin) return glm::normalize(wo + mirrored(wi, normal));
     const double eta_o = front ? 1.0 : refraction_ior, eta_i = front ? refraction_ior : 1.0;
     const glm::dvec3 h = glm::normalize(eta_o * wo + eta_i * wi);
     return glm::dot(h, normal) < 0.0 ? -h : h;
@@ -214,12 +178,8 @@ double Bsdf::half_vector_jacobian(Lobe lobe, const glm::dvec3& wo, const glm::dv
 
 /// Where a facet of normal h sends what comes from wo; none where it does not face wo or total reflection stops it.
 std::optional<glm::dvec3> Bsdf::scatter(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& h) const {
-    if (glm::dot(wo, h) <= 0.0) {
-        return std::nullopt;
-    }
-    if (lobe != Lobe::transmission) {
-        return reflected(wo, h);
-    }
+    if (glm::dot(wo, h) <= 0.0) return std::nullopt;
+    if (lobe != Lobe::transmission) return reflected(wo, h);
     return thin ? mirrored(reflected(wo, h), normal) : refract(wo, h);
 }
 
@@ -227,9 +187,7 @@ glm::dvec3 Bsdf::evaluate(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi)
     const glm::dvec3 black(0.0);
     const bool through = lobe == Lobe::transmission;
     const double co = glm::dot(wo, normal_of(lobe)), ci = glm::dot(wi, normal_of(lobe)) * (through ? -1.0 : 1.0);
-    if (is_delta(lobe) || !has(lobe) || ci <= 0.0 || (glm::dot(wi, geometric_normal) < 0.0) != through) {
-        return black;
-    }
+    if (is_delta(lobe) || !has(lobe) || ci <= 0.0 || (glm::dot(wi, geometric_normal) < 0.0) != through) return black;
     if (lobe == Lobe::diffuse) {
         const double share = (1.0 - metallic) * (1.0 - transmission);
         const glm::dvec3 sum = wo + wi;
@@ -237,9 +195,7 @@ glm::dvec3 Bsdf::evaluate(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi)
         const double oh = length > 0.0 ? std::min(std::abs(glm::dot(wo, sum)) / length, 1.0) : 0.0;
         return share * base_color / pi * (1.0 - brightest(fresnel_coat(oh))) * below_coat(oh);
     }
-    if (co <= 0.0) {
-        return black;
-    }
+    if (co <= 0.0) return black;
     if (lobe == Lobe::coat) {
         const glm::dvec3 h = half_vector(lobe, wo, wi);
         return glm::dvec3((1.0 - below_coat(absolute_cosine(wo, h))) * ggx(coat_alpha, coat_normal, h) *
@@ -252,29 +208,23 @@ glm::dvec3 Bsdf::evaluate(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi)
     }
     const glm::dvec3 h = half_vector(lobe, wo, wi);
     const double oh = glm::dot(wo, h);
-    if (oh <= 0.0 || (!thin && glm::dot(wi, h) >= 0.0)) {
-        return black;
-    }
+    if (oh <= 0.0 || (!thin && glm::dot(wi, h) >= 0.0)) return black;
     // Walter et al. 2007, equation 21, with the squared index of the side of wi: of radiance over squared index. Thin
     // and mirrored, the Jacobian turns it into F D V of reflection.
     return (1.0 - metallic) * transmission * base_color *
-           (below_coat(absolute_cosine(wo, normal)) * (1.0 - fresnel_exact(std::min(oh, 1.0))) *
-            ggx(alpha, normal, h) * visibility(alpha, co, ci) * 4.0 * oh * half_vector_jacobian(lobe, wo, wi, h));
+           (below_coat(absolute_cosine(wo, normal)) * (1.0 - fresnel_exact(std::min(oh, 1.0))) * ggx(alpha, normal, h) *
+            visibility(alpha, co, ci) * 4.0 * oh * half_vector_jacobian(lobe, wo, wi, h));
 }
 
 glm::dvec3 Bsdf::evaluate(const glm::dvec3& wo, const glm::dvec3& wi) const {
     glm::dvec3 sum(0.0);
-    for (const Lobe lobe : all_lobes) {
-        sum += evaluate(lobe, wo, wi);
-    }
+    for (const Lobe lobe : all_lobes) sum += evaluate(lobe, wo, wi);
     return sum;
 }
 
 glm::dvec3 Bsdf::evaluate_cosine(const glm::dvec3& wo, const glm::dvec3& wi) const {
     glm::dvec3 sum(0.0);
-    for (const Lobe lobe : all_lobes) {
-        sum += evaluate(lobe, wo, wi) * std::abs(glm::dot(wi, normal_of(lobe)));
-    }
+    for (const Lobe lobe : all_lobes) sum += evaluate(lobe, wo, wi) * std::abs(glm::dot(wi, normal_of(lobe)));
     return sum;
 }
 
@@ -306,9 +256,7 @@ Bsdf::Deltas Bsdf::delta_lobes(const glm::dvec3& wo) const {
 Bsdf::Choice Bsdf::choice(const glm::dvec3& wo) const {
     Choice albedo{};
     const auto at = [&](Lobe lobe) -> double& { return albedo[std::size_t(lobe)]; };
-    for (const Delta& delta : delta_lobes(wo)) {
-        at(delta.lobe) = mean(delta.weight);
-    }
+    for (const Delta& delta : delta_lobes(wo)) at(delta.lobe) = mean(delta.weight);
     const double co = cosine(wo, normal), below = below_coat(co);
     const auto rough = [&](Lobe lobe) {
         return has(lobe) && !is_delta(lobe) && (lobe == Lobe::diffuse || glm::dot(wo, normal_of(lobe)) > 0.0);
@@ -317,16 +265,12 @@ Bsdf::Choice Bsdf::choice(const glm::dvec3& wo) const {
         at(Lobe::diffuse) = least_albedo + below * (1.0 - metallic) * (1.0 - transmission) * mean(base_color) *
                                                (1.0 - brightest(fresnel_coat(co)));
     }
-    if (rough(Lobe::reflection)) {
-        at(Lobe::reflection) = least_albedo + below * mean(reflectance(co));
-    }
+    if (rough(Lobe::reflection)) at(Lobe::reflection) = least_albedo + below * mean(reflectance(co));
     if (rough(Lobe::transmission)) {
-        at(Lobe::transmission) = least_albedo + below * (1.0 - metallic) * transmission * mean(base_color) *
-                                                    (1.0 - fresnel_exact(co));
+        at(Lobe::transmission) =
+            least_albedo + below * (1.0 - metallic) * transmission * mean(base_color) * (1.0 - fresnel_exact(co));
     }
-    if (rough(Lobe::coat)) {
-        at(Lobe::coat) = least_albedo + 1.0 - below_coat(cosine(wo, coat_normal));
-    }
+    if (rough(Lobe::coat)) at(Lobe::coat) = least_albedo + 1.0 - below_coat(cosine(wo, coat_normal));
     const double total = albedo[0] + albedo[1] + albedo[2] + albedo[3];
     for (double& probability : albedo) {
         probability = total > 0.0 ? probability / total : 0.0;
@@ -337,16 +281,12 @@ Bsdf::Choice Bsdf::choice(const glm::dvec3& wo) const {
 double Bsdf::lobe_pdf(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi) const {
     const bool through = lobe == Lobe::transmission;
     const double ci = glm::dot(wi, normal_of(lobe)) * (through ? -1.0 : 1.0);
-    if (ci <= 0.0 || (glm::dot(wi, geometric_normal) < 0.0) != through) {
-        return 0.0;
-    }
+    if (ci <= 0.0 || (glm::dot(wi, geometric_normal) < 0.0) != through) return 0.0;
     if (lobe == Lobe::diffuse) {
         return ci / pi;
     }
     const glm::dvec3 h = half_vector(lobe, wo, wi);
-    if (glm::dot(wo, h) <= 0.0 || (through && !thin && glm::dot(wi, h) >= 0.0)) {
-        return 0.0;
-    }
+    if (glm::dot(wo, h) <= 0.0 || (through && !thin && glm::dot(wi, h) >= 0.0)) return 0.0;
     return visible_normal_pdf(lobe == Lobe::coat ? coat_alpha : alpha, normal_of(lobe), wo, h) *
            half_vector_jacobian(lobe, wo, wi, h);
 }
@@ -361,9 +301,7 @@ double Bsdf::pdf(const Choice& choice, const glm::dvec3& wo, const glm::dvec3& w
     return sum;
 }
 
-double Bsdf::pdf(const glm::dvec3& wo, const glm::dvec3& wi) const {
-    return pdf(choice(wo), wo, wi);
-}
+double Bsdf::pdf(const glm::dvec3& wo, const glm::dvec3& wi) const { return pdf(choice(wo), wo, wi); }
 
 std::optional<Bsdf::Sample> Bsdf::sample(const glm::dvec3& wo, std::mt19937_64& random) const {
     const Choice choices = choice(wo);
@@ -372,14 +310,10 @@ std::optional<Bsdf::Sample> Bsdf::sample(const glm::dvec3& wo, std::mt19937_64& 
     for (const Lobe lobe : all_lobes) {
         if (const double probability = choices[std::size_t(lobe)]; probability > 0.0) {
             chosen = lobe;  // the last one also takes what rounding leaves
-            if ((left -= probability) < 0.0) {
-                break;
-            }
+            if ((left -= probability) < 0.0) break;
         }
     }
-    if (!chosen) {
-        return std::nullopt;
-    }
+    if (!chosen) return std::nullopt;
     const Lobe lobe = *chosen;
     if (is_delta(lobe)) {
         for (const Delta& delta : delta_lobes(wo)) {
@@ -401,9 +335,7 @@ std::optional<Bsdf::Sample> Bsdf::sample(const glm::dvec3& wo, std::mt19937_64& 
     }
     const double density = pdf(choices, wo, *wi);
     const glm::dvec3 value = evaluate_cosine(wo, *wi);
-    if (value == glm::dvec3(0.0)) {
-        return std::nullopt;
-    }
+    if (value == glm::dvec3(0.0)) return std::nullopt;
     return Sample{*wi, value / density, density, lobe};
 }
 
@@ -416,8 +348,7 @@ glm::dvec3 Bsdf::lobe_albedo(Lobe lobe, const glm::dvec3& wo, int steps) const {
         // cos^2 = t for diffuse. Of the half vectors of D (n.h), tan^2 = alpha^2 (1 - t^2) / t^2, so that the
         // density of t is 2 t: it takes away the pole of 1 / (n.h) at grazing half vectors.
         const double t = (i + 0.5) / steps;
-        const double sine2 =
-            lobe == Lobe::diffuse ? 1.0 - t : a * a * (1.0 - t * t) / (t * t + a * a * (1.0 - t * t));
+        const double sine2 = lobe == Lobe::diffuse ? 1.0 - t : a * a * (1.0 - t * t) / (t * t + a * a * (1.0 - t * t));
         const double c = std::sqrt(1.0 - sine2);
         for (int j = 0; j < steps; ++j) {
             const double angle = 2.0 * pi * (j + 0.5) / steps;
@@ -436,13 +367,9 @@ glm::dvec3 Bsdf::lobe_albedo(Lobe lobe, const glm::dvec3& wo, int steps) const {
 
 glm::dvec3 Bsdf::directional_albedo(const glm::dvec3& wo, int steps) const {
     glm::dvec3 sum(0.0);
-    for (const Delta& delta : delta_lobes(wo)) {
-        sum += delta.weight;
-    }
+    for (const Delta& delta : delta_lobes(wo)) sum += delta.weight;
     for (const Lobe lobe : all_lobes) {
-        if (!is_delta(lobe)) {
-            sum += lobe_albedo(lobe, wo, steps);
-        }
+        if (!is_delta(lobe)) sum += lobe_albedo(lobe, wo, steps);
     }
     return sum;
 }

@@ -29,16 +29,16 @@ struct Bsdf {
     glm::dvec3 coat_normal{0.0, 0.0, 1.0};       // unit, shading
     glm::dvec3 base_color{1.0};
     double metallic = 0.0;
-    double alpha = 1.0;                     // roughness^2
+    double alpha = 1.0;  // roughness^2
     double transmission = 0.0;
-    double ior = 1.5;                       // of reflectances; 0: infinite, reflectance 1
-    double refraction_ior = 1.5;            // of Snell's law: differs where a path draws its wavelength here
+    double ior = 1.5;             // of reflectances; 0: infinite, reflectance 1
+    double refraction_ior = 1.5;  // of Snell's law: differs where a path draws its wavelength here
     double specular = 1.0;
     glm::dvec3 specular_color{1.0};
     double coat = 0.0;
-    double coat_alpha = 0.0;                // clearcoatRoughness^2
-    bool thin = true;                       // no volume behind: transmitted light passes straight on
-    bool front = true;                      // wo is on the outside
+    double coat_alpha = 0.0;  // clearcoatRoughness^2
+    bool thin = true;         // no volume behind: transmitted light passes straight on
+    bool front = true;        // wo is on the outside
 
     /// The bidirectional scattering function of one lobe, 1/sr, without the cosine and without delta lobes. That of
     /// transmission into a solid is for radiance over squared index: f(wo, wi) eta_o^2 = f(wi, wo) eta_i^2.
@@ -54,7 +54,7 @@ struct Bsdf {
     /// the geometric surface is absorbed; a transmissive one lets it in.
     struct Delta {
         Lobe lobe;
-        glm::dvec3 direction;               // unit
+        glm::dvec3 direction;  // unit
         glm::dvec3 weight;
     };
     using Deltas = boost::container::static_vector<Delta, 3>;
@@ -67,10 +67,10 @@ struct Bsdf {
     /// A direction and the factor f |n.wi| / pdf on the path's radiance. A lobe is chosen by its estimated albedo,
     /// GGX by visible normals (Heitz 2018, "Sampling the GGX Distribution of Visible Normals").
     struct Sample {
-        glm::dvec3 direction;               // unit
-        glm::dvec3 weight;                  // of all lobes that are no deltas, or of the one delta
-        double pdf = 0.0;                   // as pdf(), 1/sr; 0: a delta lobe
-        Lobe lobe = Lobe::diffuse;          // that chose the direction
+        glm::dvec3 direction;       // unit
+        glm::dvec3 weight;          // of all lobes that are no deltas, or of the one delta
+        double pdf = 0.0;           // as pdf(), 1/sr; 0: a delta lobe
+        Lobe lobe = Lobe::diffuse;  // that chose the direction
     };
     /// None where the path ends: absorbed, or sampled where the lobe is black.
     std::optional<Sample> sample(const glm::dvec3& wo, std::mt19937_64& random) const;
@@ -100,7 +100,7 @@ private:
     glm::dvec3 lobe_albedo(Lobe lobe, const glm::dvec3& wo, int steps) const;
     std::optional<glm::dvec3> scatter(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& h) const;
     double half_vector_jacobian(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi, const glm::dvec3& h) const;
-    using Choice = std::array<double, 4>;   // probability [lobe]; all zero: nothing scatters
+    using Choice = std::array<double, 4>;  // probability [lobe]; all zero: nothing scatters
     Choice choice(const glm::dvec3& wo) const;
     double pdf(const Choice& choice, const glm::dvec3& wo, const glm::dvec3& wi) const;
 };

@@ -42,9 +42,7 @@ double enter(const glm::dvec3& low, const glm::dvec3& high, const Ray& ray, cons
 
 Bvh::Bvh(const Scene& scene) : scene_(scene), order_(scene.triangles.size()) {
     std::iota(order_.begin(), order_.end(), 0u);
-    if (!order_.empty()) {
-        build(0, static_cast<std::uint32_t>(order_.size()));
-    }
+    if (!order_.empty()) build(0, static_cast<std::uint32_t>(order_.size()));
 }
 
 std::uint32_t Bvh::build(std::uint32_t first, std::uint32_t count) {
@@ -72,10 +70,9 @@ std::uint32_t Bvh::build(std::uint32_t first, std::uint32_t count) {
     const glm::dvec3 extent = high_center - low_center;
     const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
     const std::uint32_t half = count / 2;
-    std::nth_element(order_.begin() + first, order_.begin() + first + half, order_.begin() + first + count,
-                     [&](std::uint32_t a, std::uint32_t b) {
-                         return centroid(scene_, a)[axis] < centroid(scene_, b)[axis];
-                     });
+    std::nth_element(
+        order_.begin() + first, order_.begin() + first + half, order_.begin() + first + count,
+        [&](std::uint32_t a, std::uint32_t b) { return centroid(scene_, a)[axis] < centroid(scene_, b)[axis]; });
     build(first, half);  // the left child follows its parent
     const std::uint32_t right = build(first + half, count - half);
     nodes_[index].first = right;
@@ -84,9 +81,7 @@ std::uint32_t Bvh::build(std::uint32_t first, std::uint32_t count) {
 
 std::optional<Hit> Bvh::walk(Ray ray, bool any) const {
     std::optional<Hit> nearest;
-    if (nodes_.empty()) {
-        return nearest;
-    }
+    if (nodes_.empty()) return nearest;
     const glm::dvec3 inverse = 1.0 / ray.direction;
     struct Entry {
         std::uint32_t node;
@@ -97,18 +92,14 @@ std::optional<Hit> Bvh::walk(Ray ray, bool any) const {
     stack[height++] = {0, enter(nodes_[0].low, nodes_[0].high, ray, inverse)};
     while (height > 0) {
         const Entry entry = stack[--height];
-        if (!(entry.t < ray.t_max)) {
-            continue;
-        }
+        if (!(entry.t < ray.t_max)) continue;
         const Node& node = nodes_[entry.node];
         if (node.count == 0) {
             Entry left{entry.node + 1, 0.0}, right{node.first, 0.0};
             for (Entry* child : {&left, &right}) {
                 child->t = enter(nodes_[child->node].low, nodes_[child->node].high, ray, inverse);
             }
-            if (left.t < right.t) {
-                std::swap(left, right);
-            }
+            if (left.t < right.t) std::swap(left, right);
             stack[height++] = left;  // the nearer one on top
             stack[height++] = right;
             continue;
@@ -117,21 +108,15 @@ std::optional<Hit> Bvh::walk(Ray ray, bool any) const {
             if (const auto hit = intersect(scene_, order_[i], ray)) {
                 nearest = hit;
                 ray.t_max = hit->t;
-                if (any) {
-                    return nearest;
-                }
+                if (any) return nearest;
             }
         }
     }
     return nearest;
 }
 
-std::optional<Hit> Bvh::nearest(const Ray& ray) const {
-    return walk(ray, false);
-}
+std::optional<Hit> Bvh::nearest(const Ray& ray) const { return walk(ray, false); }
 
-bool Bvh::occluded(const Ray& ray) const {
-    return walk(ray, true).has_value();
-}
+bool Bvh::occluded(const Ray& ray) const { return walk(ray, true).has_value(); }
 
 }  // namespace vkcppm::reference

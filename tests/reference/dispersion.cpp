@@ -6,11 +6,9 @@
 namespace vkcppm::reference {
 namespace {
 
-constexpr double half_width = 100.0;       // nm
+constexpr double half_width = 100.0;  // nm
 
-double hat(double wavelength, double centre) {
-    return std::max(0.0, 1.0 - std::abs(wavelength - centre) / half_width);
-}
+double hat(double wavelength, double centre) { return std::max(0.0, 1.0 - std::abs(wavelength - centre) / half_width); }
 
 }  // namespace
 

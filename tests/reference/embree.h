@@ -20,7 +20,7 @@ public:
     Embree& operator=(const Embree&) = delete;
 
     struct Hit {
-        float t = 0.0f;              // along the direction
+        float t = 0.0f;  // along the direction
         std::uint32_t triangle = 0;
     };
     /// rtcIntersect1; may be called by several threads at once.

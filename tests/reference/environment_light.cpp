@@ -12,16 +12,12 @@ namespace {
 
 using std::numbers::pi;
 
-double brightest(const glm::dvec3& v) {
-    return std::max({v.x, v.y, v.z});
-}
+double brightest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
 
 }  // namespace
 
 EnvironmentLight::EnvironmentLight(const std::optional<Environment>& environment) {
-    if (!environment) {
-        return;
-    }
+    if (!environment) return;
     size_ = environment->size;
     radiance_.assign(environment->radiance.begin(), environment->radiance.end());
     assert(radiance_.size() == size_.pixels());

@@ -32,8 +32,8 @@ private:
     std::size_t pixel(const glm::dvec3& direction) const;
 
     Extent size_;
-    std::vector<glm::dvec3> radiance_;     // [pixels]
-    std::vector<double> cumulative_;       // [pixels] solid angle * brightest channel
+    std::vector<glm::dvec3> radiance_;  // [pixels]
+    std::vector<double> cumulative_;    // [pixels] solid angle * brightest channel
     double total_ = 0.0;
 };
 

@@ -88,9 +88,7 @@ double sppm_kz_area_factor(std::uint64_t iteration, double alpha) {
 double constant_p_value(std::span<const std::uint32_t> tallies, const Cells& cells) {
     const auto disc = tallies.first(std::size_t(cells.rings) * cells.sectors);
     const double total = std::accumulate(disc.begin(), disc.end(), 0.0);
-    if (total == 0.0) {
-        return 1.0;
-    }
+    if (total == 0.0) return 1.0;
     const double expected = total / disc.size();
     double statistic = 0.0;
     for (const double observed : disc) {
@@ -111,9 +109,7 @@ std::vector<double> linear_cell_probabilities(const Cells& cells, double k1, dou
 double linear_p_value(std::span<const std::uint32_t> tallies, const Cells& cells) {
     const auto disc = tallies.first(std::size_t(cells.rings) * cells.sectors);
     const double total = std::accumulate(disc.begin(), disc.end(), 0.0);
-    if (total == 0.0) {
-        return 1.0;
-    }
+    if (total == 0.0) return 1.0;
     // Least squares of O/S against p: the two regressors are orthogonal to each other and to the constant.
     const Moments& moments = cell_moments(cells);
     const auto slope = [&](const std::vector<double>& regressor) {
@@ -147,14 +143,16 @@ std::vector<std::uint32_t> fold(std::span<const std::uint32_t> tallies, const Ce
 
 Decision cppm_update(std::span<const std::uint32_t> tallies, const Cells& cells, double total, double batch,
                      const TestParameters& parameters) {
-    return decide(cells.rings, total, batch, parameters,
-                  [&](std::uint32_t rings) { return constant_p_value(tallies, {rings, cells.sectors}); });
+    return decide(cells.rings, total, batch, parameters, [&](std::uint32_t rings) {
+        return constant_p_value(tallies, {rings, cells.sectors});
+    });
 }
 
 Decision cppm_lf_update(std::span<const std::uint32_t> tallies, const Cells& cells, double total, double batch,
                         const TestParameters& parameters) {
-    return decide(cells.rings, total, batch, parameters,
-                  [&](std::uint32_t rings) { return linear_p_value(tallies, {rings, cells.sectors}); });
+    return decide(cells.rings, total, batch, parameters, [&](std::uint32_t rings) {
+        return linear_p_value(tallies, {rings, cells.sectors});
+    });
 }
 
 Decision cppm_fold_update(std::span<const std::uint32_t> tallies, const Cells& cells, double total, double batch,
@@ -172,9 +170,7 @@ Decision cppm_null_update(double total, double batch, const TestParameters& para
 double f_test_p_value(const FTestState& state, const Cells& cells) {
     const std::span<const double> sums(state.sums.data(), std::size_t(cells.rings) * cells.sectors);
     const double samples = state.samples, groups = sums.size();
-    if (samples < 3.0) {
-        return 1.0;
-    }
+    if (samples < 3.0) return 1.0;
     const double mean = std::accumulate(sums.begin(), sums.end(), 0.0) / (samples * groups);
     double between = 0.0;
     double within = std::accumulate(state.squares.begin(), state.squares.begin() + cells.rings, 0.0);
@@ -184,12 +180,8 @@ double f_test_p_value(const FTestState& state, const Cells& cells) {
     }
     // Below the rounding of the sums themselves a difference is none.
     const double rounding = 1e-13 * std::accumulate(state.squares.begin(), state.squares.begin() + cells.rings, 0.0);
-    if (between <= rounding) {
-        return 1.0;
-    }
-    if (within <= rounding) {
-        return 0.0;
-    }
+    if (between <= rounding) return 1.0;
+    if (within <= rounding) return 0.0;
     const double within_freedom = groups * (samples - 1.0);
     const double statistic = (between / (groups - 1.0)) / (within / within_freedom);
     return cdf(complement(boost::math::fisher_f(groups - 1.0, within_freedom), statistic));
@@ -197,8 +189,9 @@ double f_test_p_value(const FTestState& state, const Cells& cells) {
 
 Decision f_test_update(const FTestState& state, const Cells& cells, double total, double batch,
                        const TestParameters& parameters) {
-    return decide(cells.rings, total, batch, parameters,
-                  [&](std::uint32_t rings) { return f_test_p_value(state, {rings, cells.sectors}); });
+    return decide(cells.rings, total, batch, parameters, [&](std::uint32_t rings) {
+        return f_test_p_value(state, {rings, cells.sectors});
+    });
 }
 
 const Kernel box_kernel{[](double t) { return t < 1.0 ? 1.0 / pi : 0.0; }, 1.0 / 4.0, 1.0 / pi};
@@ -223,16 +216,13 @@ double appm_pilot_radius(double first_radius, std::uint64_t iteration, double c)
 }
 
 double appm_optimal_radius(const Kernel& kernel, double second_moment, double laplacian, double paths) {
-    return std::pow(2.0 * kernel.roughness * second_moment /
-                        (paths * std::pow(kernel.second_moment * laplacian, 2)),
+    return std::pow(2.0 * kernel.roughness * second_moment / (paths * std::pow(kernel.second_moment * laplacian, 2)),
                     1.0 / 6.0);
 }
 
 double appm_radius(const AppmState& state, const Kernel& kernel, double paths_per_iteration, double low, double high,
                    double least_laplacian_squared) {
-    if (state.photons < 10.0) {
-        return state.first_radius;
-    }
+    if (state.photons < 10.0) return state.first_radius;
     const double n = double(state.iterations);
     const double laplacian = std::sqrt(std::max(std::pow(state.sum_laplacian / n, 2), least_laplacian_squared));
     const double optimal = appm_optimal_radius(kernel, state.sum_second_moment / n, laplacian, n * paths_per_iteration);

@@ -12,9 +12,9 @@ namespace vkcppm::reference {
 
 /// What an iteration does to a pixel after its photons were counted with the old radius.
 struct Decision {
-    double area_factor = 1.0;              // on R^2
-    bool clear = false;                    // start the statistics anew
-    double batch_factor = 1.0;             // on B
+    double area_factor = 1.0;   // on R^2
+    bool clear = false;         // start the statistics anew
+    double batch_factor = 1.0;  // on B
     bool operator==(const Decision&) const = default;
 };
 
@@ -23,7 +23,7 @@ struct Decision {
 /// sppm: R^2 *= (N + alpha M) / (N + M) and N += alpha M for M photons found; nothing where M = 0.
 struct SppmUpdate {
     double area_factor = 1.0;
-    double count = 0.0;                    // the new N
+    double count = 0.0;  // the new N
 };
 SppmUpdate sppm_update(double count, double found, double alpha);
 
@@ -38,8 +38,8 @@ struct Cells {
 };
 
 struct TestParameters {
-    double k = 0.8;                        // area factor where no inner disc passes
-    double beta = 1.2;                     // growth of the batch after a rejection
+    double k = 0.8;     // area factor where no inner disc passes
+    double beta = 1.2;  // growth of the batch after a rejection
     double significance = 0.05;
 };
 
@@ -76,9 +76,9 @@ Decision cppm_null_update(double total, double batch, const TestParameters& para
 
 /// Sums over `samples` iterations of what fell into a cell in one iteration.
 struct FTestState {
-    std::vector<double> sums;              // [rings x sectors] of x
-    std::vector<double> squares;           // [rings] of x^2, over the ring's sectors
-    std::uint32_t samples = 0;             // iterations since the radius last changed
+    std::vector<double> sums;     // [rings x sectors] of x
+    std::vector<double> squares;  // [rings] of x^2, over the ring's sectors
+    std::uint32_t samples = 0;    // iterations since the radius last changed
 };
 
 /// p-value of the analysis of variance over the first cells.rings rings; 1 below three samples, where all sums are
@@ -112,11 +112,11 @@ double appm_optimal_radius(const Kernel& kernel, double second_moment, double la
 
 /// What APPM keeps of a pixel.
 struct AppmState {
-    double sum_second_moment = 0.0;        // of (1/J) sum Y^2 K_r over iterations
-    double sum_laplacian = 0.0;            // of (1/J) sum Y D_rd
-    std::uint64_t iterations = 0;          // n
-    double photons = 0.0;                  // seen in all
-    double first_radius = 0.0;             // m
+    double sum_second_moment = 0.0;  // of (1/J) sum Y^2 K_r over iterations
+    double sum_laplacian = 0.0;      // of (1/J) sum Y D_rd
+    std::uint64_t iterations = 0;    // n
+    double photons = 0.0;            // seen in all
+    double first_radius = 0.0;       // m
 };
 
 /// The radius for iteration n + 1: the optimal one for n J paths inside [low, high] n^(-1/6), times the first radius;

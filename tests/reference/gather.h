@@ -11,23 +11,23 @@
 namespace vkcppm::reference {
 
 struct Photon {
-    glm::dvec3 position;                   // m
-    glm::dvec3 normal;                     // unit, geometric, on the side the photon arrived from
-    glm::dvec3 flux;                       // W a channel, or what else the caller sums (psi)
+    glm::dvec3 position;  // m
+    glm::dvec3 normal;    // unit, geometric, on the side the photon arrived from
+    glm::dvec3 flux;      // W a channel, or what else the caller sums (psi)
 };
 
 struct GatherPoint {
-    glm::dvec3 position;                   // m
-    glm::dvec3 normal;                     // unit, shading, on the side the path arrived from
-    glm::dvec3 tangent, bitangent;         // unit, across the normal: sector 0 starts at the tangent
+    glm::dvec3 position;            // m
+    glm::dvec3 normal;              // unit, shading, on the side the path arrived from
+    glm::dvec3 tangent, bitangent;  // unit, across the normal: sector 0 starts at the tangent
     std::uint32_t rings = 2, sectors = 6;
 };
 
 struct Gathered {
-    std::uint64_t count = 0;               // accepted photons
-    glm::dvec3 flux{0.0};                  // their sum (Phi)
-    std::vector<std::uint32_t> tallies;    // [rings x sectors] accepted photons a cell
-    std::vector<glm::dvec3> cell_flux;     // [rings x sectors] their flux
+    std::uint64_t count = 0;             // accepted photons
+    glm::dvec3 flux{0.0};                // their sum (Phi)
+    std::vector<std::uint32_t> tallies;  // [rings x sectors] accepted photons a cell
+    std::vector<glm::dvec3> cell_flux;   // [rings x sectors] their flux
 };
 
 /// Whether the photon's surface faces as the point's does: dot of the normals at least 0.1.

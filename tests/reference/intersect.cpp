@@ -20,9 +20,7 @@ std::optional<Hit> intersect(const Scene& scene, std::uint32_t triangle, const R
     const glm::dvec3 barycentric = volume / (volume.x + volume.y + volume.z);
     const glm::dvec3 point = barycentric.x * a + barycentric.y * b + barycentric.z * c;
     const double t = glm::dot(point, ray.direction) / glm::dot(ray.direction, ray.direction);
-    if (!(t > ray.t_min && t < ray.t_max)) {
-        return std::nullopt;
-    }
+    if (!(t > ray.t_min && t < ray.t_max)) return std::nullopt;
     return Hit{t, barycentric, triangle};
 }
 
@@ -30,9 +28,7 @@ std::optional<Hit> nearest_hit(const Scene& scene, const Ray& ray) {
     std::optional<Hit> nearest;
     for (std::uint32_t triangle = 0; triangle < scene.triangles.size(); ++triangle) {
         const auto hit = intersect(scene, triangle, ray);
-        if (hit && (!nearest || hit->t < nearest->t)) {
-            nearest = hit;
-        }
+        if (hit && (!nearest || hit->t < nearest->t)) nearest = hit;
     }
     return nearest;
 }

@@ -12,16 +12,16 @@
 namespace vkcppm::reference {
 
 struct Ray {
-    glm::dvec3 origin;                     // m
-    glm::dvec3 direction;                  // any length but zero; t counts in its lengths
-    double t_min = 0.0;                    // exclusive
+    glm::dvec3 origin;                                       // m
+    glm::dvec3 direction;                                    // any length but zero; t counts in its lengths
+    double t_min = 0.0;                                      // exclusive
     double t_max = std::numeric_limits<double>::infinity();  // exclusive
 };
 
 struct Hit {
     double t = 0.0;
-    glm::dvec3 barycentric{0.0};           // weights of vertex 0, 1, 2; sum 1
-    std::uint32_t triangle = 0;            // into Scene::triangles
+    glm::dvec3 barycentric{0.0};  // weights of vertex 0, 1, 2; sum 1
+    std::uint32_t triangle = 0;   // into Scene::triangles
 };
 
 /// Where the line of the ray meets the triangle, edges included, both sides; none where the ray lies in its plane,

@@ -24,9 +24,7 @@ namespace {
 
 constexpr std::uint32_t roulette_depth = 5;
 
-double brightest(const glm::dvec3& v) {
-    return std::max({v.x, v.y, v.z});
-}
+double brightest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
 
 struct Tracer {
     const Scene& scene;
@@ -34,17 +32,18 @@ struct Tracer {
     Bvh bvh;
     AreaLights area_lights;
     EnvironmentLight environment;
-    std::vector<glm::dvec3> absorptions;   // [materials] 1/m
-    bool has_alpha;                        // of any material
+    std::vector<glm::dvec3> absorptions;  // [materials] 1/m
+    bool has_alpha;                       // of any material
 
     Tracer(const Scene& scene, std::uint32_t max_depth)
-        : scene(scene), max_depth(max_depth), bvh(scene), area_lights(scene), environment(scene.environment),
-          has_alpha(std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& material) {
-              return material.alpha != Material::Alpha::opaque;
-          })) {
-        for (const Material& material : scene.materials) {
-            absorptions.push_back(absorption(material));
-        }
+        : scene(scene),
+          max_depth(max_depth),
+          bvh(scene),
+          area_lights(scene),
+          environment(scene.environment),
+          has_alpha(std::any_of(scene.materials.begin(), scene.materials.end(),
+                                [](const Material& material) { return material.alpha != Material::Alpha::opaque; })) {
+        for (const Material& material : scene.materials) absorptions.push_back(absorption(material));
     }
 
     const Material& material_of(const Hit& hit) const {
@@ -66,28 +65,20 @@ struct Tracer {
     std::optional<Hit> meet(Ray ray, std::mt19937_64& random) const {
         for (;;) {
             const auto hit = bvh.nearest(ray);
-            if (!hit || !has_alpha) {
-                return hit;
-            }
+            if (!hit || !has_alpha) return hit;
             const double solid = coverage(scene, *hit);
-            if (solid >= 1.0 || (solid > 0.0 && uniform(random) < solid)) {
-                return hit;
-            }
+            if (solid >= 1.0 || (solid > 0.0 && uniform(random) < solid)) return hit;
             ray.t_min = hit->t;
         }
     }
 
     /// Share of light that passes along the ray by surfaces that are not all there.
     double passes(Ray ray) const {
-        if (!has_alpha) {
-            return bvh.occluded(ray) ? 0.0 : 1.0;
-        }
+        if (!has_alpha) return bvh.occluded(ray) ? 0.0 : 1.0;
         double share = 1.0;
         while (const auto hit = bvh.nearest(ray)) {
             share *= 1.0 - coverage(scene, *hit);
-            if (share <= 0.0) {
-                return 0.0;
-            }
+            if (share <= 0.0) return 0.0;
             ray.t_min = hit->t;
         }
         return share;
@@ -101,64 +92,48 @@ struct Tracer {
     /// A vertex of a path that connects to lights.
     struct Vertex {
         const Surface& surface;
-        glm::dvec3 wo;                     // unit
+        glm::dvec3 wo;                                           // unit
         std::optional<std::uint32_t> front_medium, back_medium;  // the materials on the side of wo and behind
-        glm::dvec3 through_color;          // factor on what is transmitted: of a wavelength drawn here
+        glm::dvec3 through_color;  // factor on what is transmitted: of a wavelength drawn here
     };
 
     /// Factor f |n.wi| on the light from `direction` that starts at `distance`, with all that stands between.
     glm::dvec3 connect(const Vertex& vertex, const glm::dvec3& direction, double distance, double t_max) const {
         const bool through = glm::dot(direction, vertex.surface.geometric_normal) < 0.0;
         glm::dvec3 factor = vertex.surface.bsdf.evaluate_cosine(vertex.wo, direction);
-        if (factor == glm::dvec3(0.0)) {
-            return factor;
-        }
+        if (factor == glm::dvec3(0.0)) return factor;
         Ray shadow = leave(vertex.surface, direction);
         shadow.t_max = t_max;
         factor *= passes(shadow);
-        if (through) {
-            factor *= vertex.through_color;
-        }
+        if (through) factor *= vertex.through_color;
         return factor * transmittance(through ? vertex.back_medium : vertex.front_medium, distance);
     }
 
     /// Radiance from one sampled point on the emitters, weighted by light sampling's share of the two densities.
     glm::dvec3 from_area_lights(const Vertex& vertex, std::mt19937_64& random) const {
-        if (area_lights.empty()) {
-            return glm::dvec3(0.0);
-        }
+        if (area_lights.empty()) return glm::dvec3(0.0);
         const auto point = area_lights.sample(random);
         const glm::dvec3 to_light = point.position - vertex.surface.position;
         const double distance = glm::length(to_light);
-        if (distance == 0.0) {
-            return glm::dvec3(0.0);
-        }
+        if (distance == 0.0) return glm::dvec3(0.0);
         const glm::dvec3 direction = to_light / distance;
         const Hit hit{distance, point.barycentric, point.triangle};
         const Surface light = surface_at(scene, hit, direction);
         const glm::dvec3 emission = light.emission * coverage(scene, hit);
-        if (emission == glm::dvec3(0.0) || glm::dot(direction, light.geometric_normal) == 0.0) {
-            return glm::dvec3(0.0);
-        }
+        if (emission == glm::dvec3(0.0) || glm::dot(direction, light.geometric_normal) == 0.0) return glm::dvec3(0.0);
         const glm::dvec3 factor = connect(vertex, direction, distance, distance * (1.0 - 1e-7));
-        if (factor == glm::dvec3(0.0)) {
-            return factor;
-        }
+        if (factor == glm::dvec3(0.0)) return factor;
         return factor * emission /
                (area_light_pdf(light, direction, hit) + vertex.surface.bsdf.pdf(vertex.wo, direction));
     }
 
     /// The same from one sampled direction to the environment.
     glm::dvec3 from_environment(const Vertex& vertex, std::mt19937_64& random) const {
-        if (environment.empty()) {
-            return glm::dvec3(0.0);
-        }
+        if (environment.empty()) return glm::dvec3(0.0);
         const glm::dvec3 direction = environment.sample(random);
         const double infinity = std::numeric_limits<double>::infinity();
         const glm::dvec3 factor = connect(vertex, direction, infinity, infinity);
-        if (factor == glm::dvec3(0.0)) {
-            return factor;
-        }
+        if (factor == glm::dvec3(0.0)) return factor;
         return factor * environment.radiance(direction) /
                (environment.density(direction) + vertex.surface.bsdf.pdf(vertex.wo, direction));
     }
@@ -181,9 +156,7 @@ struct Tracer {
             const double t = std::clamp((-glm::dot(direction, light.direction) - outer) / width, 0.0, 1.0);
             irradiance *= t * t;
         }
-        if (irradiance == glm::dvec3(0.0)) {
-            return irradiance;
-        }
+        if (irradiance == glm::dvec3(0.0)) return irradiance;
         return connect(vertex, direction, distance, distance * (1.0 - 1e-9)) * irradiance;
     }
 
@@ -191,10 +164,10 @@ struct Tracer {
     struct Path {
         Ray ray;
         glm::dvec3 throughput{1.0};
-        std::optional<double> pdf{};                  // 1/sr of the last bounce; none after the camera and delta lobes
-        bool seen_directly = true;                    // so far
-        std::vector<std::uint32_t> media{};           // materials of the volumes it is in, innermost last
-        std::optional<double> wavelength{};           // nm
+        std::optional<double> pdf{};         // 1/sr of the last bounce; none after the camera and delta lobes
+        bool seen_directly = true;           // so far
+        std::vector<std::uint32_t> media{};  // materials of the volumes it is in, innermost last
+        std::optional<double> wavelength{};  // nm
 
         std::optional<std::uint32_t> medium() const {
             return media.empty() ? std::nullopt : std::optional(media.back());
@@ -224,9 +197,7 @@ struct Tracer {
         Path path{camera_ray};
         for (std::uint32_t depth = 0; depth <= max_depth; ++depth) {
             const auto hit = meet(path.ray, random);
-            if (!hit) {
-                return sum + path.throughput * escaped(path);
-            }
+            if (!hit) return sum + path.throughput * escaped(path);
             const std::uint32_t material_index = scene.triangles[hit->triangle].material;
             const Material& material = scene.materials[material_index];
             Surface surface = surface_at(scene, *hit, path.ray.direction);
@@ -234,13 +205,9 @@ struct Tracer {
             const bool volume = !bsdf.thin && bsdf.transmits();
             // A path that starts in a volume learns so where it leaves it.
             const bool inside = volume && !surface.front;
-            if (inside && path.media.empty()) {
-                path.media.push_back(material_index);
-            }
+            if (inside && path.media.empty()) path.media.push_back(material_index);
             path.throughput *= transmittance(path.medium(), hit->t);
-            if (material.unlit) {
-                return path.seen_directly ? sum + path.throughput * surface.base_color : sum;
-            }
+            if (material.unlit) return path.seen_directly ? sum + path.throughput * surface.base_color : sum;
             double share = 1.0;
             if (path.pdf) {
                 share = *path.pdf / (*path.pdf + area_light_pdf(surface, path.ray.direction, *hit));
@@ -255,28 +222,20 @@ struct Tracer {
                     through_color = wavelength_color(*drawn);
                 }
                 bsdf.refraction_ior = ior_at(bsdf.ior, material.dispersion, drawn ? *drawn : *path.wavelength);
-                if (path.wavelength) {
-                    bsdf.ior = bsdf.refraction_ior;
-                }
+                if (path.wavelength) bsdf.ior = bsdf.refraction_ior;
             }
             std::vector<std::uint32_t> behind = path.media;
-            if (volume) {
-                cross(behind, material_index, surface.front);
-            }
+            if (volume) cross(behind, material_index, surface.front);
             const glm::dvec3 wo = -path.ray.direction;
             if (depth < max_depth && !bsdf.only_deltas()) {
                 const auto back_medium = behind.empty() ? std::nullopt : std::optional(behind.back());
                 const Vertex vertex{surface, wo, path.medium(), back_medium, through_color};
                 sum += path.throughput * from_area_lights(vertex, random);
                 sum += path.throughput * from_environment(vertex, random);
-                for (const PunctualLight& light : scene.lights) {
-                    sum += path.throughput * from_punctual(vertex, light);
-                }
+                for (const PunctualLight& light : scene.lights) sum += path.throughput * from_punctual(vertex, light);
             }
             const auto next = bsdf.sample(wo, random);
-            if (!next) {
-                break;
-            }
+            if (!next) break;
             path.throughput *= next->weight;
             path.pdf = next->pdf > 0.0 ? std::optional(next->pdf) : std::nullopt;
             path.seen_directly = path.seen_directly && !path.pdf;
@@ -284,14 +243,10 @@ struct Tracer {
                 path.throughput *= through_color;
                 path.wavelength = drawn ? drawn : path.wavelength;
             }
-            if (glm::dot(next->direction, surface.geometric_normal) < 0.0) {
-                path.media = behind;
-            }
+            if (glm::dot(next->direction, surface.geometric_normal) < 0.0) path.media = behind;
             if (depth >= roulette_depth) {
                 const double survival = std::min(1.0, brightest(path.throughput));
-                if (uniform(random) >= survival) {
-                    break;
-                }
+                if (uniform(random) >= survival) break;
                 path.throughput /= survival;
             }
             path.ray = leave(surface, next->direction);

@@ -14,17 +14,17 @@ namespace vkcppm::reference {
 
 struct PathTracerSettings {
     Extent size;
-    std::uint32_t samples = 64;            // paths a pixel, >= 2
-    std::uint32_t max_depth = 64;          // bounces
+    std::uint32_t samples = 64;    // paths a pixel, >= 2
+    std::uint32_t max_depth = 64;  // bounces
     std::uint64_t seed = 1;
-    std::size_t camera = 0;                // into Scene::cameras
-    double aperture = 0.0;                 // m, diameter of the lens; 0: a pinhole
-    double focus_distance = 1.0;           // m along the camera's axis to the plane that is sharp
+    std::size_t camera = 0;       // into Scene::cameras
+    double aperture = 0.0;        // m, diameter of the lens; 0: a pinhole
+    double focus_distance = 1.0;  // m along the camera's axis to the plane that is sharp
 };
 
 struct PathTracing {
-    Image mean;                            // radiance, box filter
-    Image standard_error;                  // of the mean, a pixel and channel
+    Image mean;            // radiance, box filter
+    Image standard_error;  // of the mean, a pixel and channel
 };
 
 /// The ray of `camera` through film position (x, y) in pixels, (0, 0) the upper left corner of a picture of that size.

@@ -20,12 +20,8 @@ Scattering classify(const Bsdf& bsdf) {
             bsdf.base_color == glm::dvec3(1.0)) {
             return Scattering::glass;
         }
-        if (bsdf.metallic == 1.0 && bsdf.alpha == 0.0) {
-            return Scattering::mirror;
-        }
-        if (bsdf.metallic == 0.0 && bsdf.specular == 0.0 && bsdf.transmission == 0.0) {
-            return Scattering::lambert;
-        }
+        if (bsdf.metallic == 1.0 && bsdf.alpha == 0.0) return Scattering::mirror;
+        if (bsdf.metallic == 0.0 && bsdf.specular == 0.0 && bsdf.transmission == 0.0) return Scattering::lambert;
     }
     return Scattering::mixed;
 }
@@ -74,9 +70,7 @@ TangentSpace tangent_space(const Scene& scene, const Hit& hit, const glm::dvec3&
 /// normalize(T x scale + B y scale + N z) of a normal texture; `normal` where there is none.
 glm::dvec3 mapped_normal(const Scene& scene, const Hit& hit, const glm::dvec3& normal,
                          const std::optional<Texture>& texture, double scale) {
-    if (!texture) {
-        return normal;
-    }
+    if (!texture) return normal;
     const TangentSpace space = tangent_space(scene, hit, normal, texture->uv_set);
     const glm::dvec3 v = 2.0 * glm::dvec3(lookup(scene, hit, texture, Encoding::linear)) - 1.0;
     const glm::dvec3 sum = scale * v.x * space.tangent + scale * v.y * space.bitangent + v.z * normal;
@@ -91,12 +85,10 @@ Surface surface_at(const Scene& scene, const Hit& hit, const glm::dvec3& directi
     const Material& material = scene.materials[triangle.material];
     Surface surface;
     surface.position = interpolate<glm::dvec3>(scene.positions, scene, hit);
-    surface.geometric_normal = glm::normalize(glm::cross(scene.positions[v[1]] - scene.positions[v[0]],
-                                                         scene.positions[v[2]] - scene.positions[v[0]]));
+    surface.geometric_normal = glm::normalize(
+        glm::cross(scene.positions[v[1]] - scene.positions[v[0]], scene.positions[v[2]] - scene.positions[v[0]]));
     surface.front = glm::dot(surface.geometric_normal, direction) < 0.0;
-    if (!surface.front) {
-        surface.geometric_normal = -surface.geometric_normal;
-    }
+    if (!surface.front) surface.geometric_normal = -surface.geometric_normal;
     const glm::dvec3 vertex_normal = glm::normalize(interpolate<glm::dvec3>(scene.normals, scene, hit));
     const double side = glm::dot(vertex_normal, surface.geometric_normal) < 0.0 ? -1.0 : 1.0;
     surface.shading_normal =
@@ -105,8 +97,8 @@ Surface surface_at(const Scene& scene, const Hit& hit, const glm::dvec3& directi
                          glm::dvec3(lookup(scene, hit, material.base_color_texture, Encoding::srgb));
     surface.ior = material.ior;
     if ((surface.front || material.double_sided) && !material.unlit) {
-        surface.emission = glm::dvec3(material.emission) *
-                           glm::dvec3(lookup(scene, hit, material.emissive_texture, Encoding::srgb));
+        surface.emission =
+            glm::dvec3(material.emission) * glm::dvec3(lookup(scene, hit, material.emissive_texture, Encoding::srgb));
     }
 
     Bsdf& bsdf = surface.bsdf;
@@ -123,8 +115,8 @@ Surface surface_at(const Scene& scene, const Hit& hit, const glm::dvec3& directi
     bsdf.specular_color = glm::dvec3(material.specular_color) *
                           glm::dvec3(lookup(scene, hit, material.specular_color_texture, Encoding::srgb));
     bsdf.coat = material.clearcoat * lookup(scene, hit, material.clearcoat_texture, Encoding::linear).r;
-    const double coat_roughness = material.clearcoat_roughness *
-                                  lookup(scene, hit, material.clearcoat_roughness_texture, Encoding::linear).g;
+    const double coat_roughness =
+        material.clearcoat_roughness * lookup(scene, hit, material.clearcoat_roughness_texture, Encoding::linear).g;
     bsdf.coat_alpha = coat_roughness * coat_roughness;
     bsdf.coat_normal = side * mapped_normal(scene, hit, vertex_normal, material.clearcoat_normal_texture,
                                             material.clearcoat_normal_scale);
@@ -136,9 +128,7 @@ Surface surface_at(const Scene& scene, const Hit& hit, const glm::dvec3& directi
 
 double coverage(const Scene& scene, const Hit& hit) {
     const Material& material = scene.materials[scene.triangles[hit.triangle].material];
-    if (material.alpha == Material::Alpha::opaque) {
-        return 1.0;
-    }
+    if (material.alpha == Material::Alpha::opaque) return 1.0;
     const double alpha = material.opacity * vertex_color(scene, hit).a *
                          lookup(scene, hit, material.base_color_texture, Encoding::srgb).a;
     return material.alpha == Material::Alpha::mask ? (alpha >= material.alpha_cutoff ? 1.0 : 0.0) : alpha;
@@ -151,8 +141,8 @@ glm::dvec3 absorption(const Material& material) {
 }
 
 Ray leave(const Surface& surface, const glm::dvec3& direction) {
-    const double size = std::max({std::abs(surface.position.x), std::abs(surface.position.y),
-                                  std::abs(surface.position.z), 1e-3});
+    const double size =
+        std::max({std::abs(surface.position.x), std::abs(surface.position.y), std::abs(surface.position.z), 1e-3});
     const double side = glm::dot(direction, surface.geometric_normal) < 0.0 ? -1.0 : 1.0;
     return {surface.position + side * 1e-9 * size * surface.geometric_normal, direction};
 }

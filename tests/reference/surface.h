@@ -16,14 +16,14 @@ enum class Scattering { lambert, mirror, glass, mixed };
 /// Normals are turned to the side that the path arrived from: the shading normals with the sign that brings the
 /// interpolated normal of the vertices into the hemisphere of the geometric one.
 struct Surface {
-    glm::dvec3 position;                   // m
-    glm::dvec3 geometric_normal;           // unit
-    glm::dvec3 shading_normal;             // unit, with the normal texture
-    bool front = true;                     // the path arrived on the counter-clockwise side
+    glm::dvec3 position;          // m
+    glm::dvec3 geometric_normal;  // unit
+    glm::dvec3 shading_normal;    // unit, with the normal texture
+    bool front = true;            // the path arrived on the counter-clockwise side
     Scattering scattering = Scattering::lambert;
-    glm::dvec3 base_color{1.0};            // with texture and vertex colours
+    glm::dvec3 base_color{1.0};  // with texture and vertex colours
     double ior = 1.5;
-    glm::dvec3 emission{0.0};              // radiance towards the path; zero behind a one-sided emitter, and of unlit
+    glm::dvec3 emission{0.0};  // radiance towards the path; zero behind a one-sided emitter, and of unlit
     Bsdf bsdf;
 };
 

@@ -52,9 +52,7 @@ glm::dvec4 lookup(const Texture& texture, const TextureImage& image, const glm::
         }
         return value;
     };
-    if (texture.nearest) {
-        return texel(std::floor(place.x), std::floor(place.y));
-    }
+    if (texture.nearest) return texel(std::floor(place.x), std::floor(place.y));
     const glm::dvec2 corner = glm::floor(place - 0.5), part = place - 0.5 - corner;
     return glm::mix(glm::mix(texel(corner.x, corner.y), texel(corner.x + 1.0, corner.y), part.x),
                     glm::mix(texel(corner.x, corner.y + 1.0), texel(corner.x + 1.0, corner.y + 1.0), part.x), part.y);

@@ -11,7 +11,7 @@
 
 namespace vkcppm::reference {
 
-enum class Encoding { linear, srgb };      // of the colours; alpha is always linear
+enum class Encoding { linear, srgb };  // of the colours; alpha is always linear
 
 /// The texture at (u, v) before its transform, v downwards, each channel in [0, 1]: bilinear between texel centres (at
 /// half integers) or the nearest texel, wrapped; sRGB is decoded (IEC 61966-2-1) before interpolation.

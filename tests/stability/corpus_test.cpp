@@ -103,14 +103,14 @@ TEST_P(Corpus, EveryModelRenders) {
     EXPECT_LE(refused, part.refused);
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, Corpus,
-                         testing::Values(Part{"khronos", 0, 4, false, 14, 14, 0}, Part{"khronos", 1, 4, false, 13, 13, 1},
-                                         Part{"khronos", 2, 4, false, 13, 11, 1}, Part{"khronos", 3, 4, false, 12, 12, 2},
-                                         Part{"asset-generator", 0, 1, true, 15, 12, 2}),
-                         [](const testing::TestParamInfo<Part>& info) {
-                             return identifier(fmt::format("{} {} of {}", info.param.folder, info.param.index + 1,
-                                                           info.param.count));
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Models, Corpus,
+    testing::Values(Part{"khronos", 0, 4, false, 14, 14, 0}, Part{"khronos", 1, 4, false, 13, 13, 1},
+                    Part{"khronos", 2, 4, false, 13, 11, 1}, Part{"khronos", 3, 4, false, 12, 12, 2},
+                    Part{"asset-generator", 0, 1, true, 15, 12, 2}),
+    [](const testing::TestParamInfo<Part>& info) {
+        return identifier(fmt::format("{} {} of {}", info.param.folder, info.param.index + 1, info.param.count));
+    });
 
 }  // namespace
 }  // namespace vkcppm::test

@@ -115,9 +115,12 @@ TEST_F(HardMeshes, ClosedOnesAreWatertight) {
                           }),
                           rays),
                  at_most);
-    expect_error("rays out of a ball of 2e-4 m, 1e6 m away", escaping(mesh([](Scene& s) {
-                     add_sphere(s, {1e6, 1e6, -1e6}, 1e-4, 4, 0, false);
-                 }), rays), at_most);
+    expect_error("rays out of a ball of 2e-4 m, 1e6 m away",
+                 escaping(mesh([](Scene& s) {
+                              add_sphere(s, {1e6, 1e6, -1e6}, 1e-4, 4, 0, false);
+                          }),
+                          rays),
+                 at_most);
 }
 
 // With corners in the order of the file (first_corner) 0.0070 and 0.0075; with hits outside their needles, too, 0.044
@@ -178,10 +181,13 @@ TEST_F(HardMeshes, OfManyTrianglesInOnePlace) {
     };
     expect_error("every triangle and lamp twice", difference(picture(repeated(2)), easy), 0.0);
     expect_error("every triangle and lamp 10,000 times", difference(picture(repeated(10000)), easy), 0.0);
-    expect_error("a floor on the floor, cut otherwise", difference(picture(floor([](Scene& scene) {
-                                                            add_whole(scene);
-                                                            add_quad(scene, {1, 0, -1}, {-2, 0, 0}, {0, 0, 2}, 0);
-                                                        })), easy), 1e-3);
+    expect_error("a floor on the floor, cut otherwise",
+                 difference(picture(floor([](Scene& scene) {
+                                add_whole(scene);
+                                add_quad(scene, {1, 0, -1}, {-2, 0, 0}, {0, 0, 2}, 0);
+                            })),
+                            easy),
+                 1e-3);
 }
 
 // Rounding decides without part_touching_faces: 0.39 and 0.66.

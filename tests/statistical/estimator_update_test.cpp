@@ -35,14 +35,13 @@ double log_uniform(Random& random, double low, double high) {
 /// What the update kernel reads and writes of every pixel.
 struct States {
     std::vector<gpu::PixelState> pixels;
-    std::vector<std::uint32_t> found;      // photons of the iteration
-    std::vector<std::uint32_t> tally;      // [rows x P]
-    std::vector<float> moments;            // [rows x P]
+    std::vector<std::uint32_t> found;  // photons of the iteration
+    std::vector<std::uint32_t> tally;  // [rows x P]
+    std::vector<float> moments;        // [rows x P]
 };
 
 /// Column `pixel` of [rows x P] values.
-template <typename T>
-std::vector<T> column(const std::vector<T>& values, std::size_t pixels, std::size_t pixel) {
+template <typename T> std::vector<T> column(const std::vector<T>& values, std::size_t pixels, std::size_t pixel) {
     std::vector<T> result;
     for (std::size_t i = pixel; i < values.size(); i += pixels) result.push_back(values[i]);
     return result;
@@ -311,9 +310,7 @@ TEST_P(EstimatorUpdate, DecidesAsTheReference) {
     RecordProperty("excluded", int(outcome.excluded));
     EXPECT_GT(outcome.kept, 10000u);
     EXPECT_GT(outcome.shrunk, 3000u);
-    if (GetParam() != "cppm-null") {
-        EXPECT_GT(outcome.inner, 3000u);
-    }
+    if (GetParam() != "cppm-null") EXPECT_GT(outcome.inner, 3000u);
     EXPECT_LT(outcome.excluded, many * many / 500);
 }
 

@@ -34,23 +34,53 @@ struct Row {
 std::ostream& operator<<(std::ostream& out, const Row& row) { return out << row.field; }
 
 const std::vector<Row> rows = {
-    {"linear", {{"cppm", rejects_above(0.98)}, {"ftest", rejects_above(0.98)}, {"cppm-lf", keeps}, {"cppm-gof", keeps},
-                {"cppm-fold", keeps}, {"ftest-fold", keeps}}},
-    {"gauss", {{"cppm", rejects_above(0.95)}, {"ftest", rejects_above(0.95)}, {"cppm-lf", rejects_above(0.95)},
-               {"cppm-gof", rejects_above(0.95)}, {"cppm-fold", rejects_above(0.98)}, {"ftest-fold", rejects_above(0.97)}}},
+    {"linear",
+     {{"cppm", rejects_above(0.98)},
+      {"ftest", rejects_above(0.98)},
+      {"cppm-lf", keeps},
+      {"cppm-gof", keeps},
+      {"cppm-fold", keeps},
+      {"ftest-fold", keeps}}},
+    {"gauss",
+     {{"cppm", rejects_above(0.95)},
+      {"ftest", rejects_above(0.95)},
+      {"cppm-lf", rejects_above(0.95)},
+      {"cppm-gof", rejects_above(0.95)},
+      {"cppm-fold", rejects_above(0.98)},
+      {"ftest-fold", rejects_above(0.97)}}},
     // What is left of an edge by its best linear fit, or once opposite cells are added, is less than the edge.
-    {"edge", {{"cppm", rejects_above(0.98)}, {"ftest", rejects_above(0.98)}, {"cppm-lf", rejects_above(0.6)},
-              {"cppm-gof", rejects_above(0.5)}, {"cppm-fold", rejects_above(0.6)}, {"ftest-fold", rejects_above(0.6)}}},
-    {"ridge", {{"cppm", rejects_above(0.85)}, {"ftest", rejects_above(0.85)}, {"cppm-lf", rejects_above(0.85)},
-               {"cppm-gof", rejects_above(0.85)}, {"cppm-fold", rejects_above(0.9)}, {"ftest-fold", rejects_above(0.9)}}},
-    {"sine", {{"cppm", rejects_above(0.98)}, {"ftest", rejects_above(0.98)}, {"cppm-lf", rejects_above(0.68)},
-              {"cppm-gof", keeps}, {"cppm-fold", keeps}, {"ftest-fold", keeps}}},
+    {"edge",
+     {{"cppm", rejects_above(0.98)},
+      {"ftest", rejects_above(0.98)},
+      {"cppm-lf", rejects_above(0.6)},
+      {"cppm-gof", rejects_above(0.5)},
+      {"cppm-fold", rejects_above(0.6)},
+      {"ftest-fold", rejects_above(0.6)}}},
+    {"ridge",
+     {{"cppm", rejects_above(0.85)},
+      {"ftest", rejects_above(0.85)},
+      {"cppm-lf", rejects_above(0.85)},
+      {"cppm-gof", rejects_above(0.85)},
+      {"cppm-fold", rejects_above(0.9)},
+      {"ftest-fold", rejects_above(0.9)}}},
+    {"sine",
+     {{"cppm", rejects_above(0.98)},
+      {"ftest", rejects_above(0.98)},
+      {"cppm-lf", rejects_above(0.68)},
+      {"cppm-gof", keeps},
+      {"cppm-fold", keeps},
+      {"ftest-fold", keeps}}},
     // Chi-squared takes three photons of one path for three observations.
-    {"uniform-clustered", {{"cppm", rejects_above(0.75)}, {"cppm-fold", rejects_above(0.5)}, {"ftest", keeps},
-                           {"ftest-fold", keeps}}},
+    {"uniform-clustered",
+     {{"cppm", rejects_above(0.75)}, {"cppm-fold", rejects_above(0.5)}, {"ftest", keeps}, {"ftest-fold", keeps}}},
     // Counts know nothing of flux.
-    {"flux-gradient", {{"cppm", keeps}, {"cppm-lf", keeps}, {"cppm-gof", keeps}, {"cppm-fold", keeps},
-                       {"ftest", rejects_above(0.85)}, {"ftest-fold", rejects_above(0.92)}}},
+    {"flux-gradient",
+     {{"cppm", keeps},
+      {"cppm-lf", keeps},
+      {"cppm-gof", keeps},
+      {"cppm-fold", keeps},
+      {"ftest", rejects_above(0.85)},
+      {"ftest-fold", rejects_above(0.92)}}},
     // The analysis of variance is conservative where contributions have heavy tails.
     {"heavy-tailed", {{"cppm", keeps}, {"cppm-fold", keeps}, {"ftest", {0.01, 0.077}}, {"ftest-fold", {0.01, 0.077}}}},
 };
@@ -68,7 +98,8 @@ TEST_P(Power, EveryTestSeesWhatItsNullHypothesisExcludes) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Fields, Power, testing::ValuesIn(rows), [](const auto& info) { return identifier(info.param.field); });
+INSTANTIATE_TEST_SUITE_P(Fields, Power, testing::ValuesIn(rows),
+                         [](const auto& info) { return identifier(info.param.field); });
 
 // Power of one look at M = 30 and M = 100 photons by simulation on the same fields; folding opposite sectors tests the
 // hypothesis of the random flip with more power.
@@ -78,9 +109,12 @@ TEST(Folding, HasTheSimulatedPower) {
         const char* field;
         double at_30, at_100;
     };
-    for (const Case& c : {Case{"cppm-gof", "gauss", 0.297, 0.919}, {"cppm-fold", "gauss", 0.465, 0.975},
-                          {"cppm-gof", "edge", 0.089, 0.247}, {"cppm-fold", "edge", 0.129, 0.346},
-                          {"cppm-gof", "ridge", 0.308, 0.895}, {"cppm-fold", "ridge", 0.455, 0.957}}) {
+    for (const Case& c : {Case{"cppm-gof", "gauss", 0.297, 0.919},
+                          {"cppm-fold", "gauss", 0.465, 0.975},
+                          {"cppm-gof", "edge", 0.089, 0.247},
+                          {"cppm-fold", "edge", 0.129, 0.346},
+                          {"cppm-gof", "ridge", 0.308, 0.895},
+                          {"cppm-fold", "ridge", 0.455, 0.957}}) {
         Settings settings;
         settings.estimator = c.estimator;
         SyntheticField field(plain_device(), settings, find_field(c.field), 48, 100.0, 6);

@@ -44,8 +44,8 @@ TEST(Radius, HachisukaAndJensenAtConstantDensityAndAtConstantCount) {
     SyntheticField field(plain_device(), settings_of("sppm"), find_field("uniform"), 2, 10.0, 1);
     const auto ratio_of = [&](std::size_t pixel) { return field.states()[pixel].radius2 / field.first_radius2(); };
     std::uint32_t done = 0;
-    for (const auto& [iterations, at_density] : {std::pair{1u, 0.6667}, {2u, 0.5556}, {3u, 0.4938}, {10u, 0.3390},
-                                                 {100u, 0.1589}, {1000u, 0.07384}}) {
+    for (const auto& [iterations, at_density] :
+         {std::pair{1u, 0.6667}, {2u, 0.5556}, {3u, 0.4938}, {10u, 0.3390}, {100u, 0.1589}, {1000u, 0.07384}}) {
         for (; done < iterations; ++done) {
             const auto found = std::uint32_t(std::lround(1e6 * ratio_of(0)));
             const std::vector<gpu::Gathered> gathered = {{glm::vec3(0.0f), found, glm::vec3(0.0f), 0},
@@ -110,9 +110,7 @@ double batch_slope(double beta, std::uint32_t last) {
 }
 
 // R^2 ~ T^-gamma, gamma = ln(1/k) / (ln(1/k) + ln(beta)): the law of SPPM's alpha = 2/3 at beta = 1 / k^2.
-TEST(Radius, BatchesGrowLikeOneOverKSquared) {
-    EXPECT_NEAR(batch_slope(1.0 / (0.8 * 0.8), 800), -1.0 / 3.0, 0.01);
-}
+TEST(Radius, BatchesGrowLikeOneOverKSquared) { EXPECT_NEAR(batch_slope(1.0 / (0.8 * 0.8), 800), -1.0 / 3.0, 0.01); }
 
 TEST(Radius, BatchesOfThePaperShrinkFaster) {
     EXPECT_NEAR(batch_slope(1.2, 400), std::log(0.8) / (std::log(1.2) - std::log(0.8)), 0.01);
@@ -152,9 +150,8 @@ TEST(Radius, AppmMomentsAreAveragesOfTheField) {
     const double smoothed = over_square([&](double x, double y) {
         return gauss.density(x, y) * reference::smootherstep_kernel.value(std::hypot(x, y));
     });
-    const double curved = over_square([&](double x, double y) {
-        return gauss.density(x, y) * reference::laplacian_stencil(x, y, 0.5);
-    });
+    const double curved =
+        over_square([&](double x, double y) { return gauss.density(x, y) * reference::laplacian_stencil(x, y, 0.5); });
     const double first = field.first_radius2();
     // A photon contributes y = pi R_1^2 / lambda; V = J E[sum y^2 K].
     const double paths = field.integrator().params().photons, unit = field.integrator().params().flux_unit;

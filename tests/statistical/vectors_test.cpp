@@ -48,8 +48,10 @@ TEST_F(Vectors, CriticalValuesOfChiSquared) {
         const char* estimator;
         double inner, outer;
     };
-    for (const Case& c : {Case{"cppm", 11.07050, 19.67514}, {"cppm-gof", 11.07050, 19.67514},
-                          {"cppm-lf", 7.81473, 16.91898}, {"cppm-fold", 5.99146, 11.07050}}) {
+    for (const Case& c : {Case{"cppm", 11.07050, 19.67514},
+                          {"cppm-gof", 11.07050, 19.67514},
+                          {"cppm-lf", 7.81473, 16.91898},
+                          {"cppm-fold", 5.99146, 11.07050}}) {
         SyntheticField field = pixel(c.estimator);
         EXPECT_NEAR(field.integrator().params().threshold[0], c.inner, 6e-6) << c.estimator;
         EXPECT_NEAR(field.integrator().params().threshold[1], c.outer, 6e-6) << c.estimator;
@@ -63,8 +65,14 @@ TEST_F(Vectors, CriticalValuesOfTheFTest) {
         float samples;
         double critical;
     };
-    for (const Case& c : {Case{2, 3, 2.216}, {2, 5, 1.995}, {2, 10, 1.878}, {2, 20, 1.831}, {1, 3, 3.106},
-                          {1, 5, 2.621}, {1, 10, 2.386}, {1, 20, 2.294}}) {
+    for (const Case& c : {Case{2, 3, 2.216},
+                          {2, 5, 1.995},
+                          {2, 10, 1.878},
+                          {2, 20, 1.831},
+                          {1, 3, 3.106},
+                          {1, 5, 2.621},
+                          {1, 10, 2.386},
+                          {1, 20, 2.294}}) {
         SyntheticField field = pixel("ftest", c.rings);
         const std::size_t n = 6 * c.rings;
         field.reset(0.0);

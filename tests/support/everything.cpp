@@ -16,10 +16,17 @@ int compressed_float3(GltfBuilder& builder, const std::vector<Float3>& values) {
         meshopt_encodeVertexBuffer(encoded.data(), encoded.size(), values.data(), values.size(), sizeof(Float3)));
     const int view = builder.view(encoded);
     json& stored = builder.document["bufferViews"][view];
-    const json extension = {{"buffer", 0}, {"byteOffset", stored["byteOffset"]}, {"byteLength", stored["byteLength"]},
-                            {"byteStride", sizeof(Float3)}, {"count", values.size()}, {"mode", "ATTRIBUTES"}};
-    stored = {{"buffer", 0}, {"byteOffset", 0}, {"byteLength", values.size() * sizeof(Float3)},
-              {"byteStride", sizeof(Float3)}, {"extensions", {{"EXT_meshopt_compression", extension}}}};
+    const json extension = {{"buffer", 0},
+                            {"byteOffset", stored["byteOffset"]},
+                            {"byteLength", stored["byteLength"]},
+                            {"byteStride", sizeof(Float3)},
+                            {"count", values.size()},
+                            {"mode", "ATTRIBUTES"}};
+    stored = {{"buffer", 0},
+              {"byteOffset", 0},
+              {"byteLength", values.size() * sizeof(Float3)},
+              {"byteStride", sizeof(Float3)},
+              {"extensions", {{"EXT_meshopt_compression", extension}}}};
     return builder.accessor(view, "VEC3", 5126, values.size());
 }
 
@@ -30,7 +37,7 @@ int normalized(GltfBuilder& builder, int accessor) {
 
 void add_materials(GltfBuilder& b) {
     const int texture = b.texture(encode_png({2, 2}, std::vector<std::uint8_t>{255, 0, 0, 255, 0, 255, 0, 128,  //
-                                                                              0, 0, 255, 0, 90, 90, 200, 255}));
+                                                                               0, 0, 255, 0, 90, 90, 200, 255}));
     b.document["textures"][texture]["sampler"] =
         b.add("samplers", {{"magFilter", 9728}, {"minFilter", 9987}, {"wrapS", 33071}, {"wrapT", 33648}});
     const json moved = {{"index", texture},
@@ -40,8 +47,11 @@ void add_materials(GltfBuilder& b) {
                            {{"offset", {0.1, 0.2}}, {"rotation", 0.3}, {"scale", {2, -1}}, {"texCoord", 0}}}}}};
     const json plain = {{"index", texture}};
     b.add("materials", {{"pbrMetallicRoughness",
-                         {{"baseColorFactor", {0.5, 0.6, 0.7, 0.8}}, {"metallicFactor", 0.5}, {"roughnessFactor", 0.4},
-                          {"baseColorTexture", moved}, {"metallicRoughnessTexture", plain}}},
+                         {{"baseColorFactor", {0.5, 0.6, 0.7, 0.8}},
+                          {"metallicFactor", 0.5},
+                          {"roughnessFactor", 0.4},
+                          {"baseColorTexture", moved},
+                          {"metallicRoughnessTexture", plain}}},
                         {"normalTexture", {{"index", texture}, {"scale", 0.5}}},
                         {"emissiveTexture", plain},
                         {"emissiveFactor", {1, 0.5, 0.25}},
@@ -51,11 +61,16 @@ void add_materials(GltfBuilder& b) {
                         {"extensions",
                          {{"KHR_materials_emissive_strength", {{"emissiveStrength", 5}}},
                           {"KHR_materials_specular",
-                           {{"specularFactor", 0.5}, {"specularColorFactor", {1, 0.9, 0.8}}, {"specularTexture", plain},
+                           {{"specularFactor", 0.5},
+                            {"specularColorFactor", {1, 0.9, 0.8}},
+                            {"specularTexture", plain},
                             {"specularColorTexture", moved}}},
                           {"KHR_materials_clearcoat",
-                           {{"clearcoatFactor", 0.5}, {"clearcoatRoughnessFactor", 0.1}, {"clearcoatTexture", plain},
-                            {"clearcoatRoughnessTexture", plain}, {"clearcoatNormalTexture", plain}}}}}});
+                           {{"clearcoatFactor", 0.5},
+                            {"clearcoatRoughnessFactor", 0.1},
+                            {"clearcoatTexture", plain},
+                            {"clearcoatRoughnessTexture", plain},
+                            {"clearcoatNormalTexture", plain}}}}}});
     b.add("materials",
           {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}},
            {"alphaMode", "BLEND"},
@@ -90,8 +105,8 @@ GltfBuilder everything() {
     b.document["bufferViews"].back()["byteStride"] = 4;
     const int tangent =
         b.accessor(b.view(std::vector<float>{1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, -1, 1, 0, 0, 1}), "VEC4", 5126, 4);
-    const int uv0 = normalized(b, b.accessor(b.view(std::vector<std::uint16_t>{0, 0, 65535, 0, 0, 65535, 65535, 65535}),
-                                             "VEC2", 5123, 4));
+    const int uv0 = normalized(
+        b, b.accessor(b.view(std::vector<std::uint16_t>{0, 0, 65535, 0, 0, 65535, 65535, 65535}), "VEC2", 5123, 4));
     const int uv1 = b.accessor(b.view(std::vector<float>{0, 0, 2, 0, 0, 2, 2, 2}), "VEC2", 5126, 4);
     const int color = normalized(b, b.accessor(b.view(std::vector<std::uint8_t>(16, 200)), "VEC4", 5121, 4));
     const int displacement = b.add("accessors", {{"componentType", 5126}, {"type", "VEC3"}, {"count", 4}});
@@ -99,9 +114,11 @@ GltfBuilder everything() {
         {"count", 1},
         {"indices", {{"bufferView", b.view(std::vector<std::uint8_t>{2})}, {"componentType", 5121}}},
         {"values", {{"bufferView", b.view(std::vector<Float3>{{0.1f, 0.2f, 0.3f}})}}}};
-    const json attributes = {{"POSITION", position}, {"NORMAL", normal}, {"TANGENT", tangent},
+    const json attributes = {{"POSITION", position}, {"NORMAL", normal},  {"TANGENT", tangent},
                              {"TEXCOORD_0", uv0},    {"TEXCOORD_1", uv1}, {"COLOR_0", color}};
-    const int strip = b.mesh({{"attributes", attributes}, {"mode", 5}, {"material", 0},
+    const int strip = b.mesh({{"attributes", attributes},
+                              {"mode", 5},
+                              {"material", 0},
                               {"targets", json::array({{{"POSITION", displacement}}})}});
     b.document["meshes"][strip]["weights"] = {0.5};
     const int indexed = b.mesh({{"attributes", {{"POSITION", position}, {"TEXCOORD_0", uv0}}},
@@ -117,7 +134,8 @@ GltfBuilder everything() {
     b.add("nodes",
           {{"translation", {0, 3, 0}}, {"camera", 0}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
     b.add("nodes", {{"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1}},
-                    {"children", {4}}, {"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}});
+                    {"children", {4}},
+                    {"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}});
     b.add("nodes", {{"extensions", {{"KHR_lights_punctual", {{"light", 2}}}}}});
     b.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}, {"aspectRatio", 1.5}}}});
     b.document["scenes"] = {{{"nodes", {0}}}};

@@ -9,9 +9,7 @@ std::string base64(const std::string& bytes) {
     std::string text;
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
         std::uint32_t bits = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            bits = bits << 8 | (i + k < bytes.size() ? std::uint8_t(bytes[i + k]) : 0u);
-        }
+        for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (i + k < bytes.size() ? std::uint8_t(bytes[i + k]) : 0u);
         for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? digits[bits >> (18 - 6 * k) & 63] : '=';
     }
     return text;
@@ -36,9 +34,7 @@ std::string GltfBuilder::gltf_with_uri(const std::string& uri) const {
     return whole.dump();
 }
 
-std::string GltfBuilder::gltf() const {
-    return gltf_with_uri(data_uri(bytes(), "application/octet-stream"));
-}
+std::string GltfBuilder::gltf() const { return gltf_with_uri(data_uri(bytes(), "application/octet-stream")); }
 
 std::string GltfBuilder::glb() const {
     nlohmann::json whole = document;

@@ -18,8 +18,7 @@ public:
     nlohmann::json document = {{"asset", {{"version", "2.0"}}}};
 
     /// Appends `elements` to the buffer, aligned to 4 bytes, and returns the index of a bufferView of them.
-    template <typename T>
-    int view(const std::vector<T>& elements) {
+    template <typename T> int view(const std::vector<T>& elements) {
         buffer_.resize((buffer_.size() + 3) / 4 * 4);
         const std::size_t offset = buffer_.size(), size = elements.size() * sizeof(T);
         buffer_.resize(offset + size);

@@ -46,12 +46,10 @@ public:
         create(binding, data.size() * sizeof(T), kind);
         buffers_.at(binding).upload(data);
     }
-    template <typename T>
-    void output(std::uint32_t binding, std::size_t count) {
+    template <typename T> void output(std::uint32_t binding, std::size_t count) {
         create(binding, count * sizeof(T), Buffer::Kind::storage);
     }
-    template <typename T>
-    std::vector<T> result(std::uint32_t binding, std::size_t count) const {
+    template <typename T> std::vector<T> result(std::uint32_t binding, std::size_t count) const {
         return buffers_.at(binding).download<T>(count);
     }
     void run(std::uint64_t invocations, const gpu::Launch& launch = {});

@@ -32,9 +32,9 @@ inline int warnings_with(const Scene& scene, const std::vector<std::string>& par
 
 inline std::string all_warnings(const Scene& scene) { return fmt::format("{}", fmt::join(scene.warnings, "\n")); }
 
-#define EXPECT_ONE_WARNING(scene, ...)                              \
-    EXPECT_EQ(vkcppm::test::warnings_with(scene, {__VA_ARGS__}), 1) \
-        << "the warnings are:\n" << vkcppm::test::all_warnings(scene)
+#define EXPECT_ONE_WARNING(scene, ...)                                                       \
+    EXPECT_EQ(vkcppm::test::warnings_with(scene, {__VA_ARGS__}), 1) << "the warnings are:\n" \
+                                                                    << vkcppm::test::all_warnings(scene)
 
 /// Loads `bytes` as <folder>/hostile.gltf: it must give an Error of one line that holds the file and all parts.
 void expect_bad_scene(const std::string& bytes, const std::vector<std::string>& parts);

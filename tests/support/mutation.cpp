@@ -27,28 +27,91 @@ private:
 };
 
 const std::vector<json>& odd_values() {
-    static const std::vector<json> values = {
-        -1, 0, 1, 2, 3, 4, 7, 255, 256, 65535, 65536, 1 << 24, 2147483647, 2147483648u, 4294967295u, 4294967296,
-        9007199254740992, std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::uint64_t>::max(), 0.5, -0.5,
-        1e-300, 1e-30, 1e18, 1e38, 1e39, 1e300, -1e300, 3.14159, nullptr, true, false, "", "x", "../secret.bin",
-        "%2e%2e/x", "/etc/passwd", "data:;base64,AAAA", "http://x", std::string(2000, 'a'), std::string(1, '\0'),
-        json::array(), json::object(), json::array({json::array()}), json::array({0, 0, 0}), json::array({1e300}),
-        "VEC3", "MAT4", "SCALAR", "MASK", "BLEND", "spot", "perspective", 5120, 5121, 5123, 5125, 5126, 34963};
+    static const std::vector<json> values = {-1,
+                                             0,
+                                             1,
+                                             2,
+                                             3,
+                                             4,
+                                             7,
+                                             255,
+                                             256,
+                                             65535,
+                                             65536,
+                                             1 << 24,
+                                             2147483647,
+                                             2147483648u,
+                                             4294967295u,
+                                             4294967296,
+                                             9007199254740992,
+                                             std::numeric_limits<std::int64_t>::min(),
+                                             std::numeric_limits<std::uint64_t>::max(),
+                                             0.5,
+                                             -0.5,
+                                             1e-300,
+                                             1e-30,
+                                             1e18,
+                                             1e38,
+                                             1e39,
+                                             1e300,
+                                             -1e300,
+                                             3.14159,
+                                             nullptr,
+                                             true,
+                                             false,
+                                             "",
+                                             "x",
+                                             "../secret.bin",
+                                             "%2e%2e/x",
+                                             "/etc/passwd",
+                                             "data:;base64,AAAA",
+                                             "http://x",
+                                             std::string(2000, 'a'),
+                                             std::string(1, '\0'),
+                                             json::array(),
+                                             json::object(),
+                                             json::array({json::array()}),
+                                             json::array({0, 0, 0}),
+                                             json::array({1e300}),
+                                             "VEC3",
+                                             "MAT4",
+                                             "SCALAR",
+                                             "MASK",
+                                             "BLEND",
+                                             "spot",
+                                             "perspective",
+                                             5120,
+                                             5121,
+                                             5123,
+                                             5125,
+                                             5126,
+                                             34963};
     return values;
 }
 
 /// Members that files seldom have, each with a value for which it is read.
 const std::vector<std::pair<const char*, json>>& rare_members() {
     static const std::vector<std::pair<const char*, json>> members = {
-        {"sparse", {{"count", 1}, {"indices", {{"bufferView", 0}, {"componentType", 5121}}}, {"values", {{"bufferView", 0}}}}},
+        {"sparse",
+         {{"count", 1}, {"indices", {{"bufferView", 0}, {"componentType", 5121}}}, {"values", {{"bufferView", 0}}}}},
         {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", 0}, {"SCALE", 0}}}}}}},
-        {"extensions", {{"EXT_meshopt_compression", {{"buffer", 0}, {"byteLength", 40}, {"byteStride", 4}, {"count", 8},
-                                                     {"mode", "ATTRIBUTES"}, {"filter", "OCTAHEDRAL"}}}}},
-        {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
-                        {"KHR_materials_volume", {{"thicknessFactor", 1}, {"attenuationDistance", 1e-3}}},
-                        {"KHR_materials_dispersion", {{"dispersion", 5}}}, {"KHR_materials_ior", {{"ior", 0}}}}},
-        {"extensions", {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}, {"clearcoatTexture", {{"index", 0}}}}},
-                        {"KHR_materials_specular", {{"specularFactor", 0}}}, {"KHR_materials_unlit", json::object()}}},
+        {"extensions",
+         {{"EXT_meshopt_compression",
+           {{"buffer", 0},
+            {"byteLength", 40},
+            {"byteStride", 4},
+            {"count", 8},
+            {"mode", "ATTRIBUTES"},
+            {"filter", "OCTAHEDRAL"}}}}},
+        {"extensions",
+         {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+          {"KHR_materials_volume", {{"thicknessFactor", 1}, {"attenuationDistance", 1e-3}}},
+          {"KHR_materials_dispersion", {{"dispersion", 5}}},
+          {"KHR_materials_ior", {{"ior", 0}}}}},
+        {"extensions",
+         {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}, {"clearcoatTexture", {{"index", 0}}}}},
+          {"KHR_materials_specular", {{"specularFactor", 0}}},
+          {"KHR_materials_unlit", json::object()}}},
         {"extensions", {{"KHR_texture_transform", {{"offset", {1e9, -1e9}}, {"rotation", 1e9}, {"scale", {0, 1e30}}}}}},
         {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}},
         {"targets", json::array({{{"POSITION", 0}}, {{"NORMAL", 0}}})},
@@ -174,8 +237,8 @@ void change_bytes(std::string& bytes, Dice& dice) {
     if (bytes.empty()) return;
     const std::size_t at = dice.below(bytes.size());
     const std::size_t count = 1 + dice.below(std::min<std::size_t>(bytes.size() - at, 16));
-    static const std::vector<std::uint32_t> words = {0, 1, 0x7fffffff, 0x80000000, 0xffffffff, 0x7fc00000, 0x7f800000,
-                                                     0x7f7fffff, 1, 0x00010000, 0xff000000};
+    static const std::vector<std::uint32_t> words = {
+        0, 1, 0x7fffffff, 0x80000000, 0xffffffff, 0x7fc00000, 0x7f800000, 0x7f7fffff, 1, 0x00010000, 0xff000000};
     switch (dice.below(6)) {
         case 0: bytes[at] = char(bytes[at] ^ (1 << dice.below(8))); break;
         case 1: bytes[at] = char(dice.below(256)); break;

@@ -14,7 +14,8 @@ namespace vkcppm::test {
 /// The name as GoogleTest takes it: letters, digits and underscores.
 inline std::string identifier(std::string_view name) {
     std::string result(name);
-    std::ranges::replace_if(result, [](unsigned char c) { return !std::isalnum(c); }, '_');
+    std::ranges::replace_if(
+        result, [](unsigned char c) { return !std::isalnum(c); }, '_');
     return result;
 }
 

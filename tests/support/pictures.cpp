@@ -56,9 +56,9 @@ std::string encode_jpeg(Extent size, const std::vector<std::uint8_t>& samples, b
     tjhandle encoder = tjInitCompress();
     unsigned char* data = nullptr;
     unsigned long count = 0;
-    const int failure = tjCompress2(encoder, samples.data(), int(size.width), 0, int(size.height),
-                                    is_gray ? TJPF_GRAY : TJPF_RGB, &data, &count, is_gray ? TJSAMP_GRAY : TJSAMP_444,
-                                    100, TJFLAG_ACCURATEDCT);
+    const int failure =
+        tjCompress2(encoder, samples.data(), int(size.width), 0, int(size.height), is_gray ? TJPF_GRAY : TJPF_RGB,
+                    &data, &count, is_gray ? TJSAMP_GRAY : TJSAMP_444, 100, TJFLAG_ACCURATEDCT);
     if (failure != 0) throw std::runtime_error(tjGetErrorStr2(encoder));
     std::string bytes(reinterpret_cast<char*>(data), count);
     tjFree(data);

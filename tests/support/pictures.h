@@ -12,13 +12,13 @@ namespace vkcppm::test {
 
 /// How libpng stores the samples: its names of colour types, with a palette and transparency where they are given.
 struct PngFormat {
-    int color_type;                            // PNG_COLOR_TYPE_...
-    int bit_depth;                             // 1, 2, 4, 8 or 16
+    int color_type;  // PNG_COLOR_TYPE_...
+    int bit_depth;   // 1, 2, 4, 8 or 16
     bool interlaced = false;
-    std::vector<std::uint8_t> palette = {};         // [3 x entries]
-    std::vector<std::uint8_t> palette_alpha = {};   // [entries or fewer]
-    int transparent_gray = -1;                 // the sample that is transparent
-    double gamma = 0.0;                        // gAMA chunk
+    std::vector<std::uint8_t> palette = {};        // [3 x entries]
+    std::vector<std::uint8_t> palette_alpha = {};  // [entries or fewer]
+    int transparent_gray = -1;                     // the sample that is transparent
+    double gamma = 0.0;                            // gAMA chunk
 };
 
 /// `rows`: packed samples as in the file, 16 bits big-endian, first row on top.

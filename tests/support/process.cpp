@@ -21,9 +21,7 @@ namespace {
 bool poll(const std::function<bool()>& done) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(5);
     while (!done()) {
-        if (std::chrono::steady_clock::now() > deadline) {
-            return false;
-        }
+        if (std::chrono::steady_clock::now() > deadline) return false;
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
     return true;
@@ -33,9 +31,7 @@ bool poll(const std::function<bool()>& done) {
 
 Process::Process(const std::vector<std::string>& words, const std::filesystem::path& folder) {
     std::vector<char*> argv;
-    for (const std::string& word : words) {
-        argv.push_back(const_cast<char*>(word.c_str()));
-    }
+    for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
     argv.push_back(nullptr);
     const std::string out = (outputs_ / "out").string();
     const std::string err = (outputs_ / "err").string();
@@ -47,9 +43,7 @@ Process::Process(const std::vector<std::string>& words, const std::filesystem::p
     posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
     const int error = posix_spawn(&id_, argv[0], &actions, nullptr, argv.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
-    if (error != 0) {
-        throw std::runtime_error("cannot start " + words[0] + ": " + std::strerror(error));
-    }
+    if (error != 0) throw std::runtime_error("cannot start " + words[0] + ": " + std::strerror(error));
 }
 
 Process::~Process() {
@@ -59,9 +53,7 @@ Process::~Process() {
     }
 }
 
-void Process::send(int signal) {
-    ::kill(id_, signal);
-}
+void Process::send(int signal) { ::kill(id_, signal); }
 
 bool Process::ended() {
     reaped_ = reaped_ || ::waitpid(id_, &status_, WNOHANG) == id_;

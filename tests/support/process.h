@@ -13,7 +13,7 @@
 namespace vkcppm::test {
 
 struct ProcessResult {
-    int exit_code = -1;      // -1 where a signal ended it
+    int exit_code = -1;  // -1 where a signal ended it
     int signal = 0;
     bool timed_out = false;  // it did not end in time and was killed
     std::string out;

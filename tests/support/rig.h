@@ -28,8 +28,7 @@ struct Rig {
           integrator(on, flat, scene.cameras.at(0), settings) {}
 
     /// The whole buffer of that binding as values of T.
-    template <typename T>
-    std::vector<T> all(std::uint32_t binding) {
+    template <typename T> std::vector<T> all(std::uint32_t binding) {
         Buffer& buffer = integrator.buffer(binding);
         return buffer.download<T>(buffer.bytes() / sizeof(T));
     }

@@ -10,9 +10,7 @@
 
 namespace vkcppm::test {
 
-double sidak(double family, std::size_t tests) {
-    return -std::expm1(std::log1p(-family) / double(tests));
-}
+double sidak(double family, std::size_t tests) { return -std::expm1(std::log1p(-family) / double(tests)); }
 
 ChiSquared chi_squared(std::span<const std::uint64_t> observed, std::span<const double> probabilities) {
     EXPECT_EQ(observed.size(), probabilities.size());

@@ -25,11 +25,11 @@ double uniform(Random& random);
 /// lambda / pi * f(x, y) and carry psi(x, y). f(0) E[psi(0)] = 1: the estimate has to approach 1.
 struct Field {
     std::string_view name;
-    std::string_view formula;                               // of f, and of psi where it is not 1
-    double (*density)(double x, double y);                  // f
-    double peak;                                            // of f within two radii
-    double (*weight)(double x, double y, Random& random);   // psi
-    std::uint32_t cluster = 1;                              // photons of a path, which land together
+    std::string_view formula;                              // of f, and of psi where it is not 1
+    double (*density)(double x, double y);                 // f
+    double peak;                                           // of f within two radii
+    double (*weight)(double x, double y, Random& random);  // psi
+    std::uint32_t cluster = 1;                             // photons of a path, which land together
 };
 
 /// uniform, linear, gauss, edge, ridge, sine, uniform-clustered, edge-clustered, flux-gradient, heavy-tailed.
@@ -82,12 +82,12 @@ private:
     FlatScene flat_;
     Integrator integrator_;
     double lambda_;
-    double reach_;                       // radii around a point within which photons can matter
+    double reach_;  // radii around a point within which photons can matter
     double radius2_;
-    float power_;                        // of a photon with psi = 1
+    float power_;  // of a photon with psi = 1
     Random random_;
-    std::uint32_t iterations_ = 0;       // since the reset
-    std::vector<glm::vec3> points_;      // frame
+    std::uint32_t iterations_ = 0;   // since the reset
+    std::vector<glm::vec3> points_;  // frame
     std::vector<gpu::Photon> photons_;
     std::vector<gpu::PhotonFlux> flux_;
     std::vector<std::uint32_t> counters_;

@@ -12,9 +12,7 @@ class TemporaryFolder {
 public:
     TemporaryFolder() {
         std::string name = (std::filesystem::temp_directory_path() / "vkcppm-XXXXXX").string();
-        if (!::mkdtemp(name.data())) {
-            throw std::runtime_error("cannot make the folder " + name);
-        }
+        if (!::mkdtemp(name.data())) throw std::runtime_error("cannot make the folder " + name);
         path_ = name;
     }
     TemporaryFolder(const TemporaryFolder&) = delete;

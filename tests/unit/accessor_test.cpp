@@ -24,8 +24,7 @@ TEST(ElementsFit, DoesNotOverflow) {
 }
 
 /// The first of two vectors of three components of type T that hold 0, `low` and `high`.
-template <typename T>
-glm::dvec3 normalized(ComponentType type, T low, T high) {
+template <typename T> glm::dvec3 normalized(ComponentType type, T low, T high) {
     const T values[] = {T(0), low, high};
     AccessorView view;
     view.count = 1;

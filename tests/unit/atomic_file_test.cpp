@@ -47,9 +47,7 @@ public:
         EXPECT_EQ(::setresuid(nobody, nobody, 0), 0);
     }
     ~Unprivileged() {
-        if (was_root_) {
-            EXPECT_EQ(::setresuid(0, 0, 0), 0);
-        }
+        if (was_root_) EXPECT_EQ(::setresuid(0, 0, 0), 0);
     }
 
 private:
@@ -97,7 +95,7 @@ TEST(AtomicFile, LeavesSymbolicLinksInPlace) {
 TEST(AtomicFile, RefusesWhatIsNoFile) {
     const test::TemporaryFolder folder;
     for (const std::string& file : {folder.path().string(), (folder / "missing/a").string(), (folder / "a/").string(),
-                                   std::string("/dev/null"), std::string("/proc/a"), std::string()}) {
+                                    std::string("/dev/null"), std::string("/proc/a"), std::string()}) {
         expect_cannot_write(test::thrown_by([&] { write_file(file, "x"); }), file);
         expect_cannot_write(test::thrown_by([&] { check_writable(file); }), file);
     }

@@ -18,18 +18,14 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// y = factor x^exponent.
 Values power_law(const Values& x, double factor, double exponent) {
     Values y;
-    for (const double value : x) {
-        y.push_back(factor * std::pow(value, exponent));
-    }
+    for (const double value : x) y.push_back(factor * std::pow(value, exponent));
     return y;
 }
 
 TEST(Snapshots, AreAtPowersOfTwoAndThenEvenlySpaced) {
     std::vector<std::uint64_t> due;
     for (std::uint64_t i = 1; i <= 300; ++i) {
-        if (is_snapshot(i)) {
-            due.push_back(i);
-        }
+        if (is_snapshot(i)) due.push_back(i);
     }
     EXPECT_EQ(due, (std::vector<std::uint64_t>{1, 2, 4, 8, 16, 32, 64, 128, 192, 256}));
     EXPECT_TRUE(is_snapshot(std::uint64_t(1) << 40));

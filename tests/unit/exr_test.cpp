@@ -62,8 +62,8 @@ void write_planes(const fs::path& file, const Box2i& display, const Box2i& data,
         header.channels().insert(plane.name, Imf::Channel(plane.type));
         if (plane.type == Imf::HALF) {
             halves.emplace_back(pixels, half(plane.value));
-            frame.insert(plane.name, Imf::Slice::Make(Imf::HALF, halves.back().data(), data, sizeof(half),
-                                                      sizeof(half) * columns));
+            frame.insert(plane.name,
+                         Imf::Slice::Make(Imf::HALF, halves.back().data(), data, sizeof(half), sizeof(half) * columns));
         } else {
             floats.emplace_back(pixels, plane.value);
             frame.insert(plane.name, Imf::Slice::Make(Imf::FLOAT, floats.back().data(), data, sizeof(float),
@@ -84,9 +84,7 @@ void write_planes(const fs::path& file, const Box2i& display, const Box2i& data,
 
 const std::vector<Plane> half_rgb = {{"R", Imf::HALF, 0.5f}, {"G", Imf::HALF, 2.0f}, {"B", Imf::HALF, 0.125f}};
 
-Box2i box(int left, int top, int right, int bottom) {
-    return {V2i(left, top), V2i(right, bottom)};
-}
+Box2i box(int left, int top, int right, int bottom) { return {V2i(left, top), V2i(right, bottom)}; }
 
 TEST(Exr, KeepsEveryBit) {
     const test::TemporaryFolder folder;
@@ -134,9 +132,7 @@ TEST(Exr, IsLinearFloatRec709WithTheFirstRowOnTop) {
     frame.insert("G", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(green.data()), sizeof(float), 5 * sizeof(float)));
     input.setFrameBuffer(frame);
     input.readPixels(0, 0);
-    for (std::uint32_t x = 0; x < 5; ++x) {
-        EXPECT_EQ(green[x], image.at(x, 0).g) << "column " << x << " of the top row";
-    }
+    for (std::uint32_t x = 0; x < 5; ++x) EXPECT_EQ(green[x], image.at(x, 0).g) << "column " << x << " of the top row";
 }
 
 TEST(Exr, WritesTheSameBytesEachTime) {
@@ -194,8 +190,11 @@ TEST(Exr, RoundsToHalfFloatsWhereThatIsAskedFor) {
 
 TEST(Exr, ReadsHalfMixedAndTiledFilesOfAnyChannels) {
     const test::TemporaryFolder folder;
-    const std::vector<Plane> mixed = {{"A", Imf::HALF, 1.0f}, {"B", Imf::FLOAT, 0.125f}, {"Z", Imf::FLOAT, 9.0f},
-                                      {"R", Imf::HALF, 0.5f}, {"G", Imf::FLOAT, 2.0f}};
+    const std::vector<Plane> mixed = {{"A", Imf::HALF, 1.0f},
+                                      {"B", Imf::FLOAT, 0.125f},
+                                      {"Z", Imf::FLOAT, 9.0f},
+                                      {"R", Imf::HALF, 0.5f},
+                                      {"G", Imf::FLOAT, 2.0f}};
     const Box2i window = box(0, 0, 20, 10);
     write_planes(folder / "half.exr", window, window, half_rgb);
     write_planes(folder / "mixed.exr", window, window, mixed);
@@ -245,9 +244,7 @@ TEST(Exr, PlacesTheDataWindowWhereItBelongs) {
     const Image read = read_exr(folder / "a.exr");
     ASSERT_EQ(read.extent, (Extent{12, 9}));
     for (std::uint32_t y = 0; y < 4; ++y) {
-        for (std::uint32_t x = 0; x < 6; ++x) {
-            EXPECT_EQ(read.at(x + 3, y + 2), image.at(x, y)) << x << ", " << y;
-        }
+        for (std::uint32_t x = 0; x < 6; ++x) EXPECT_EQ(read.at(x + 3, y + 2), image.at(x, y)) << x << ", " << y;
     }
 }
 

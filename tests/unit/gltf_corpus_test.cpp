@@ -153,9 +153,7 @@ TEST(GltfCorpus, CornellGlassIsWhatItsDescriptionSays) {
     const Scene scene = load_gltf(file);
     EXPECT_EQ(scene.triangles.size(), 40980u);
     EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.front();
-    const auto named = [&](const char* name) {
-        return *std::ranges::find(scene.materials, name, &Material::name);
-    };
+    const auto named = [&](const char* name) { return *std::ranges::find(scene.materials, name, &Material::name); };
     EXPECT_FLOAT_EQ(named("light").emission.x, 25.033299f);
     EXPECT_FLOAT_EQ(named("glass").ior, 1.6f);
     EXPECT_GT(named("glass").thickness, 0.0f);

@@ -35,24 +35,27 @@ Scene load_material(const json& material) {
 }
 
 TEST(GltfMaterial, ReadsEveryFactorOfAMaterial) {
-    const Material m = load_material({
-        {"name", "all"},
-        {"doubleSided", true},
-        {"alphaMode", "MASK"},
-        {"alphaCutoff", 0.125},
-        {"pbrMetallicRoughness",
-         {{"baseColorFactor", {0.1, 0.2, 0.3, 0.5}}, {"metallicFactor", 0.25}, {"roughnessFactor", 0.75}}},
-        {"emissiveFactor", {1, 0.5, 0.25}},
-        {"extensions",
-         {{"KHR_materials_emissive_strength", {{"emissiveStrength", 5000000000}}},  // above 2^32
-          {"KHR_materials_transmission", {{"transmissionFactor", 0.9}}},
-          {"KHR_materials_ior", {{"ior", 1.6}}},
-          {"KHR_materials_volume",
-           {{"thicknessFactor", 2}, {"attenuationDistance", 3}, {"attenuationColor", {0.5, 0.6, 0.7}}}},
-          {"KHR_materials_clearcoat", {{"clearcoatFactor", 0.625}, {"clearcoatRoughnessFactor", 0.375}}},
-          {"KHR_materials_dispersion", {{"dispersion", 0.36}}},
-          {"KHR_materials_specular", {{"specularFactor", 0}, {"specularColorFactor", {1, 2, 3}}}}}},
-    }).materials.at(0);
+    const Material m =
+        load_material(
+            {
+                {"name", "all"},
+                {"doubleSided", true},
+                {"alphaMode", "MASK"},
+                {"alphaCutoff", 0.125},
+                {"pbrMetallicRoughness",
+                 {{"baseColorFactor", {0.1, 0.2, 0.3, 0.5}}, {"metallicFactor", 0.25}, {"roughnessFactor", 0.75}}},
+                {"emissiveFactor", {1, 0.5, 0.25}},
+                {"extensions",
+                 {{"KHR_materials_emissive_strength", {{"emissiveStrength", 5000000000}}},  // above 2^32
+                  {"KHR_materials_transmission", {{"transmissionFactor", 0.9}}},
+                  {"KHR_materials_ior", {{"ior", 1.6}}},
+                  {"KHR_materials_volume",
+                   {{"thicknessFactor", 2}, {"attenuationDistance", 3}, {"attenuationColor", {0.5, 0.6, 0.7}}}},
+                  {"KHR_materials_clearcoat", {{"clearcoatFactor", 0.625}, {"clearcoatRoughnessFactor", 0.375}}},
+                  {"KHR_materials_dispersion", {{"dispersion", 0.36}}},
+                  {"KHR_materials_specular", {{"specularFactor", 0}, {"specularColorFactor", {1, 2, 3}}}}}},
+            })
+            .materials.at(0);
     EXPECT_EQ(m.name, "all");
     EXPECT_TRUE(m.double_sided);
     EXPECT_EQ(m.base_color, glm::vec3(0.1f, 0.2f, 0.3f));
@@ -141,8 +144,8 @@ GltfBuilder textured_triangle() {
     GltfBuilder builder = test::one_triangle();
     json& attributes = builder.document["meshes"][0]["primitives"][0]["attributes"];
     for (const char* name : {"TEXCOORD_0", "TEXCOORD_1"}) {
-        attributes[name] = builder.accessor(
-            builder.view(std::vector<std::array<float, 2>>{{0, 0}, {1, 0}, {0, 1}}), "VEC2", 5126, 3);
+        attributes[name] =
+            builder.accessor(builder.view(std::vector<std::array<float, 2>>{{0, 0}, {1, 0}, {0, 1}}), "VEC2", 5126, 3);
     }
     return builder;
 }
@@ -194,8 +197,8 @@ TEST(GltfTexture, EveryUseReadsItsOwn) {
     const Scene scene = load(builder);
     const Material& m = scene.materials.at(0);
     const std::array<const std::optional<Texture>*, 10> textures = {
-        &m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.emissive_texture,
-        &m.transmission_texture, &m.specular_texture, &m.specular_color_texture, &m.clearcoat_texture,
+        &m.base_color_texture,          &m.metallic_roughness_texture, &m.normal_texture,         &m.emissive_texture,
+        &m.transmission_texture,        &m.specular_texture,           &m.specular_color_texture, &m.clearcoat_texture,
         &m.clearcoat_roughness_texture, &m.clearcoat_normal_texture};
     for (std::size_t i = 0; i < textures.size(); ++i) {
         ASSERT_TRUE(*textures[i]) << "texture " << i;
@@ -209,20 +212,18 @@ TEST(GltfTexture, EveryUseReadsItsOwn) {
 TEST(GltfTexture, WhatMultipliesZeroIsNotRead) {
     GltfBuilder builder = textured_triangle();
     const json info = {{"index", builder.texture("no picture")}};
-    set_material(builder,
-                 {{"pbrMetallicRoughness",
-                   {{"metallicFactor", 0}, {"roughnessFactor", 0}, {"metallicRoughnessTexture", info}}},
-                  {"emissiveTexture", info},
-                  {"occlusionTexture", info},
-                  {"extensions",
-                   {{"KHR_materials_transmission", {{"transmissionTexture", info}}},
-                    {"KHR_materials_volume", {{"thicknessFactor", 1}, {"thicknessTexture", info}}},
-                    {"KHR_materials_specular",
-                     {{"specularFactor", 0}, {"specularTexture", info}, {"specularColorTexture", info}}},
-                    {"KHR_materials_clearcoat",
-                     {{"clearcoatTexture", info},
-                      {"clearcoatRoughnessTexture", info},
-                      {"clearcoatNormalTexture", info}}}}}});
+    set_material(
+        builder,
+        {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}, {"metallicRoughnessTexture", info}}},
+         {"emissiveTexture", info},
+         {"occlusionTexture", info},
+         {"extensions",
+          {{"KHR_materials_transmission", {{"transmissionTexture", info}}},
+           {"KHR_materials_volume", {{"thicknessFactor", 1}, {"thicknessTexture", info}}},
+           {"KHR_materials_specular",
+            {{"specularFactor", 0}, {"specularTexture", info}, {"specularColorTexture", info}}},
+           {"KHR_materials_clearcoat",
+            {{"clearcoatTexture", info}, {"clearcoatRoughnessTexture", info}, {"clearcoatNormalTexture", info}}}}}});
     const Scene scene = load(builder);
     EXPECT_TRUE(scene.images.empty());
     EXPECT_TRUE(scene.uv[0].empty());

@@ -56,9 +56,9 @@ void add_normals(GltfBuilder& builder) {
 /// A material of the primitive with a texture of one set; a normal map where `is_normal`.
 void add_texture(GltfBuilder& builder, int set, bool is_normal = false) {
     const json info = {{"index", builder.texture(test::one_texel_png({9, 9, 9, 9}))}, {"texCoord", set}};
-    primitive(builder)["material"] = builder.add(
-        "materials", is_normal ? json{{"normalTexture", info}}
-                               : json{{"pbrMetallicRoughness", {{"baseColorTexture", info}}}});
+    primitive(builder)["material"] =
+        builder.add("materials", is_normal ? json{{"normalTexture", info}}
+                                           : json{{"pbrMetallicRoughness", {{"baseColorTexture", info}}}});
 }
 
 /// The values of a vertex vector at the corners of triangle 0.
@@ -120,8 +120,8 @@ TEST(GltfUv, AreZeroForPrimitivesThatHaveNone) {
     json& textured = builder.document["meshes"][0]["primitives"][1];
     textured["attributes"]["TEXCOORD_0"] =
         builder.accessor(builder.view(std::vector<Float2>{{1, 2}, {3, 4}, {5, 6}}), "VEC2", 5126, 3);
-    textured["material"] = builder.add("materials", {{"normalTexture", {{"index", builder.texture(
-                                                                            test::one_texel_png({0, 0, 0, 0}))}}}});
+    textured["material"] =
+        builder.add("materials", {{"normalTexture", {{"index", builder.texture(test::one_texel_png({0, 0, 0, 0}))}}}});
     const Scene scene = load(builder);
     ASSERT_EQ(scene.triangles.size(), 3u);
     const glm::vec2 none(0);
@@ -174,8 +174,8 @@ TEST(GltfColor, ReadsEveryTypeWithAndWithoutAlpha) {
     expect_colors_of_type<std::uint8_t, 3>(5121, {{0, 51, 255}, {255, 0, 0}, {0, 0, 102}}, opaque);
     expect_colors_of_type<std::uint8_t, 4>(5121, {{0, 51, 255, 0}, {255, 0, 0, 204}, {0, 0, 102, 255}}, clear);
     expect_colors_of_type<std::uint16_t, 3>(5123, {{0, 13107, 65535}, {65535, 0, 0}, {0, 0, 26214}}, opaque);
-    expect_colors_of_type<std::uint16_t, 4>(
-        5123, {{0, 13107, 65535, 0}, {65535, 0, 0, 52428}, {0, 0, 26214, 65535}}, clear);
+    expect_colors_of_type<std::uint16_t, 4>(5123, {{0, 13107, 65535, 0}, {65535, 0, 0, 52428}, {0, 0, 26214, 65535}},
+                                            clear);
 }
 
 TEST(GltfColor, WhiteThroughoutIsNone) {

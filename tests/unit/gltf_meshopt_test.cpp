@@ -38,18 +38,17 @@ int add_compressed_view(GltfBuilder& builder, const Bytes& encoded, std::size_t 
                         const char* mode, const char* filter = "NONE") {
     const int stored = builder.view(encoded);
     const json where = builder.document["bufferViews"][stored];
-    builder.document["bufferViews"][stored] = {
-        {"buffer", 1},
-        {"byteLength", count * stride},
-        {"extensions",
-         {{name,
-           {{"buffer", 0},
-            {"byteOffset", where["byteOffset"]},
-            {"byteLength", where["byteLength"]},
-            {"byteStride", stride},
-            {"count", count},
-            {"mode", mode},
-            {"filter", filter}}}}}};
+    builder.document["bufferViews"][stored] = {{"buffer", 1},
+                                               {"byteLength", count * stride},
+                                               {"extensions",
+                                                {{name,
+                                                  {{"buffer", 0},
+                                                   {"byteOffset", where["byteOffset"]},
+                                                   {"byteLength", where["byteLength"]},
+                                                   {"byteStride", stride},
+                                                   {"count", count},
+                                                   {"mode", mode},
+                                                   {"filter", filter}}}}}};
     if (std::strcmp(mode, "ATTRIBUTES") == 0) builder.document["bufferViews"][stored]["byteStride"] = stride;
     return stored;
 }

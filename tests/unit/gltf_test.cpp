@@ -105,8 +105,9 @@ TEST(Gltf, TakesTheDefaultSceneElseTheFirstElseAllRoots) {
     GltfBuilder builder = test::one_triangle();
     builder.add("nodes", {{"mesh", 0}, {"translation", {10, 0, 0}}, {"children", {2}}});
     builder.add("nodes", {{"mesh", 0}, {"translation", {100, 0, 0}}});
-    expect_corners(load(builder), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {10, 0, 0}, {11, 0, 0}, {10, 1, 0},
-                                   {110, 0, 0}, {111, 0, 0}, {110, 1, 0}});
+    expect_corners(
+        load(builder),
+        {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {10, 0, 0}, {11, 0, 0}, {10, 1, 0}, {110, 0, 0}, {111, 0, 0}, {110, 1, 0}});
     builder.add("scenes", {{"nodes", {0}}});
     builder.add("scenes", {{"nodes", {1}}});
     expect_corners(load(builder), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
@@ -229,8 +230,7 @@ TEST(Gltf, SkipsPointsAndLinesWithOneWarning) {
     EXPECT_ONE_WARNING(scene, "meshes[0].primitives[1] (and 3 more)", "points and lines are skipped");
 }
 
-template <typename T>
-void expect_indices_of_type(int component) {
+template <typename T> void expect_indices_of_type(int component) {
     SCOPED_TRACE(component);
     GltfBuilder builder;
     const int positions = builder.float3(square_strip);
@@ -353,8 +353,18 @@ TEST(Gltf, SharesTheVerticesOfPrimitivesWithTheSameAttributes) {
     builder.document["nodes"] = {{{"mesh", 0}}, {{"mesh", 0}, {"translation", {0, 0, 5}}}};
     const Scene scene = load(builder);
     EXPECT_EQ(scene.positions.size(), 8u);  // four an instance
-    expect_corners(scene, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0},
-                           {0, 0, 5}, {1, 0, 5}, {0, 1, 5}, {0, 1, 5}, {1, 0, 5}, {1, 1, 5}});
+    expect_corners(scene, {{0, 0, 0},
+                           {1, 0, 0},
+                           {0, 1, 0},
+                           {0, 1, 0},
+                           {1, 0, 0},
+                           {1, 1, 0},
+                           {0, 0, 5},
+                           {1, 0, 5},
+                           {0, 1, 5},
+                           {0, 1, 5},
+                           {1, 0, 5},
+                           {1, 1, 5}});
 }
 
 TEST(Gltf, IgnoresSkinsAndAnimationsWithOneWarningEach) {
@@ -384,7 +394,8 @@ GltfBuilder with_camera(const json& camera, json node) {
 
 TEST(Gltf, ReadsAPerspectiveCameraAndRemovesItsScale) {
     const double half = std::numbers::sqrt2 / 2.0;
-    const json camera = {{"type", "perspective"}, {"name", "eye"},
+    const json camera = {{"type", "perspective"},
+                         {"name", "eye"},
                          {"perspective", {{"yfov", 0.5}, {"znear", 0.1}, {"aspectRatio", 1.5}}}};
     // Turned by 90 degrees about y: it looks along -x, its right hand is -z.
     const json node = {{"translation", {1, 2, 3}}, {"rotation", {0, half, 0, half}}, {"scale", {2, 5, 7}}};
@@ -460,7 +471,10 @@ Scene load_light(const json& light, const json& node) {
 
 TEST(Gltf, ReadsASpotLightTurnedAboutX) {
     const double half = std::numbers::sqrt2 / 2.0;
-    const json light = {{"type", "spot"}, {"name", "lamp"}, {"color", {1, 0.5, 0.25}}, {"intensity", 8},
+    const json light = {{"type", "spot"},
+                        {"name", "lamp"},
+                        {"color", {1, 0.5, 0.25}},
+                        {"intensity", 8},
                         {"spot", {{"innerConeAngle", 0.25}, {"outerConeAngle", 0.5}}}};
     // Turned by -90 degrees about x: -z becomes -y. The scale must not matter.
     const Scene scene =
@@ -499,8 +513,8 @@ TEST(Gltf, ClampsConesWithAWarning) {
     const Scene wide = load_light({{"type", "spot"}, {"spot", {{"outerConeAngle", 2.0}}}}, json::object());
     EXPECT_EQ(wide.lights[0].outer_cone, std::numbers::pi / 2);
     EXPECT_ONE_WARNING(wide, "outerConeAngle = 2", "clamped");
-    const Scene hard = load_light(
-        {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.5}}}}, json::object());
+    const Scene hard =
+        load_light({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.5}}}}, json::object());
     EXPECT_LT(hard.lights[0].inner_cone, hard.lights[0].outer_cone);
     EXPECT_ONE_WARNING(hard, "innerConeAngle = 0.5", "clamped");
     const Scene rounded =

@@ -22,9 +22,9 @@ std::string header(const std::string& size, const std::string& lines = "FORMAT=3
 std::string bytes(const std::vector<int>& values) { return std::string(values.begin(), values.end()); }
 
 TEST(Hdr, ReadsFlatPixels) {
-    const Image image = decode(header("-Y 2 +X 2") + bytes({128, 64, 32, 129,    //
-                                                            255, 0, 1, 128,      //
-                                                            200, 100, 50, 0,     //
+    const Image image = decode(header("-Y 2 +X 2") + bytes({128, 64, 32, 129,  //
+                                                            255, 0, 1, 128,    //
+                                                            200, 100, 50, 0,   //
                                                             128, 128, 128, 136}));
     ASSERT_EQ(image.extent, (Extent{2, 2}));
     EXPECT_EQ(image.at(0, 0), glm::vec3(1.0f, 0.5f, 0.25f));
@@ -40,10 +40,10 @@ TEST(Hdr, ReadsTheWholeRangeOfExponents) {
 }
 
 /// A row of 8 in the newer encoding: red 10 runs, green and blue as they are, the exponent in two runs.
-const std::vector<int> new_row = {2, 2, 0, 8,                                 //
-                                  128 + 8, 10,                                //
-                                  8, 1, 2, 3, 4, 5, 6, 7, 8,                  //
-                                  3, 9, 9, 9, 128 + 5, 7,                     //
+const std::vector<int> new_row = {2,       2,   0,       8,                        //
+                                  128 + 8, 10,                                     //
+                                  8,       1,   2,       3,  4,       5, 6, 7, 8,  //
+                                  3,       9,   9,       9,  128 + 5, 7,           //
                                   128 + 4, 136, 128 + 4, 137};
 
 TEST(Hdr, ReadsTheNewerRunLengthEncoding) {
@@ -61,7 +61,7 @@ TEST(Hdr, ReadsTheNewerRunLengthEncoding) {
 TEST(Hdr, ReadsTheOlderRunLengthEncoding) {
     // 1 pixel, 2 repetitions, 1 pixel, 1 + 1 * 256 repetitions.
     const Image image = decode(header("-Y 1 +X 261") + bytes({5, 6, 7, 136, 1, 1, 1, 2, 8, 9, 10, 136,  //
-                                                              1, 1, 1, 1, 1, 1, 1, 1}));
+                                                              1, 1, 1, 1,   1, 1, 1, 1}));
     ASSERT_EQ(image.rgb.size(), 261u);
     for (std::uint32_t x = 0; x < 261; ++x) {
         EXPECT_EQ(image.at(x, 0), x < 3 ? glm::vec3(5, 6, 7) : glm::vec3(8, 9, 10)) << x;
@@ -76,8 +76,9 @@ TEST(Hdr, AWideRowIsFlatWhereItHasNoMarker) {
 }
 
 TEST(Hdr, DividesByExposureAndColourCorrection) {
-    const std::string lines = "# made by hand\nEXPOSURE=4\nSOFTWARE=none\nEXPOSURE= 0.5\nCOLORCORR=1 2 4\n"
-                              "FORMAT=32-bit_rle_rgbe\n";
+    const std::string lines =
+        "# made by hand\nEXPOSURE=4\nSOFTWARE=none\nEXPOSURE= 0.5\nCOLORCORR=1 2 4\n"
+        "FORMAT=32-bit_rle_rgbe\n";
     const Image image = decode(header("-Y 1 +X 1", lines) + bytes({128, 128, 128, 132}));
     EXPECT_EQ(image.at(0, 0), glm::vec3(4.0f, 2.0f, 1.0f));
 }

@@ -96,9 +96,7 @@ TEST(Layering, EveryFileOfTheHostKeepsTheRules) {
     const fs::path host = fs::path(VKCPPM_SOURCE_DIR) / "host";
     std::set<std::string> folders;
     for (const auto& entry : fs::recursive_directory_iterator(host)) {
-        if (!entry.is_regular_file()) {
-            continue;
-        }
+        if (!entry.is_regular_file()) continue;
         const fs::path name = fs::relative(entry.path(), host);
         const std::string folder = name.parent_path().string();
         ASSERT_TRUE(allowed.contains(folder)) << name << " lies in a folder that the design does not know";

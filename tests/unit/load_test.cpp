@@ -23,18 +23,16 @@ std::string thin_tetrahedron() {
     builder.add("materials", {{"name", "crystal"},
                               {"pbrMetallicRoughness", {{"metallicFactor", 0}}},
                               {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}});
-    builder.add("nodes", {{"name", "gem"},
-                          {"mesh", builder.mesh({{"attributes", {{"POSITION", positions}}},
-                                                 {"indices", indices},
-                                                 {"material", 0}})}});
+    builder.add(
+        "nodes",
+        {{"name", "gem"},
+         {"mesh", builder.mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices}, {"material", 0}})}});
     return builder.gltf();
 }
 
 int lines_with(const Scene& scene, const std::string& part) {
     int lines = 0;
-    for (const std::string& line : scene.warnings) {
-        lines += line.find(part) != line.npos;
-    }
+    for (const std::string& line : scene.warnings) lines += line.find(part) != line.npos;
     return lines;
 }
 

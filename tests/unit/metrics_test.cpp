@@ -117,9 +117,9 @@ TEST(Srgb, HasTheStandardsValues) {
 }
 
 TEST(Srgb, BytesAreClampedAndRounded) {
-    EXPECT_EQ(srgb_byte(0.5), 188);    // 187.516
-    EXPECT_EQ(srgb_byte(0.18), 118);   // 117.6
-    EXPECT_EQ(srgb_byte(0.2140), 127); // 126.99
+    EXPECT_EQ(srgb_byte(0.5), 188);     // 187.516
+    EXPECT_EQ(srgb_byte(0.18), 118);    // 117.6
+    EXPECT_EQ(srgb_byte(0.2140), 127);  // 126.99
     EXPECT_EQ(srgb_byte(1.0), 255);
     EXPECT_EQ(srgb_byte(7.0), 255);
     EXPECT_EQ(srgb_byte(-1.0), 0);
@@ -185,9 +185,7 @@ TEST(Metrics, IdenticalPicturesHaveNoError) {
     const Image reference = noisy_pair(31, 17, 9).second;
     const Comparison c = compare(reference, reference);
     EXPECT_EQ(c.mean_ratio, glm::dvec3(1.0));
-    for (const Metric& metric : metrics()) {
-        EXPECT_EQ(metric.of(c), 0.0) << metric.name;
-    }
+    for (const Metric& metric : metrics()) EXPECT_EQ(metric.of(c), 0.0) << metric.name;
     EXPECT_EQ(c.psnr, std::numeric_limits<double>::infinity());
 }
 
@@ -221,15 +219,11 @@ TEST(Metrics, OfPicturesWithoutAFinitePixelAreNotANumber) {
     const Image image = picture(1, 1, {glm::vec3(std::numeric_limits<float>::quiet_NaN())});
     const Comparison c = compare(image, image);
     EXPECT_EQ(c.pixels, 0u);
-    for (const Metric& metric : metrics()) {
-        EXPECT_TRUE(std::isnan(metric.of(c))) << metric.name << " " << metric.of(c);
-    }
+    for (const Metric& metric : metrics()) EXPECT_TRUE(std::isnan(metric.of(c))) << metric.name << " " << metric.of(c);
 }
 
 TEST(Metrics, AreFoundByTheirNames) {
-    for (const Metric& metric : metrics()) {
-        EXPECT_EQ(&find_metric("--stop-at", metric.name), &metric) << metric.name;
-    }
+    for (const Metric& metric : metrics()) EXPECT_EQ(&find_metric("--stop-at", metric.name), &metric) << metric.name;
     const auto error = test::thrown_by([] { find_metric("--stop-at", "relMSE"); });
     ASSERT_TRUE(error);
     EXPECT_EQ(error->code(), ExitCode::usage);

@@ -31,15 +31,29 @@ void resolve(const Words& words) {
 
 struct NumberOption {
     const char* name;
-    Words refused;          // beside what no number is
-    Words taken;            // the ends of the range
-    Words company = {};     // options that it needs
+    Words refused;       // beside what no number is
+    Words taken;         // the ends of the range
+    Words company = {};  // options that it needs
 };
 
-const Words no_whole_numbers = {"",     "-1",  "-0",         "+1",  "nan",        "inf",        "1.5", "1e3", "0x10",
-                                " 1",   "1 ",  "4294967296", "9223372036854775808", "18446744073709551616",
-                                "99999999999999999999999999", "many"};
-const Words no_real_numbers = {"", "nan", "-nan", "inf", "-inf", "infinity", "1e999", "-1e999", "0,5", "0x1p3", " 1", "1 ", "many"};
+const Words no_whole_numbers = {"",
+                                "-1",
+                                "-0",
+                                "+1",
+                                "nan",
+                                "inf",
+                                "1.5",
+                                "1e3",
+                                "0x10",
+                                " 1",
+                                "1 ",
+                                "4294967296",
+                                "9223372036854775808",
+                                "18446744073709551616",
+                                "99999999999999999999999999",
+                                "many"};
+const Words no_real_numbers = {"",       "nan", "-nan",  "inf", "-inf", "infinity", "1e999",
+                               "-1e999", "0,5", "0x1p3", " 1",  "1 ",   "many"};
 
 const std::vector<NumberOption> whole_numbers = {
     {"--iterations", {"0", "2147483648", "4294967295"}, {"1", "1073741823"}},
@@ -101,7 +115,8 @@ TEST(OptionValues, RealNumbersHaveARange) {
 }
 
 TEST(OptionValues, TimesHaveARange) {
-    for (const char* value : {"", "0", "0s", "-1", "nan", "inf", "1e999", "1e300h", "1e9", "1e-320", "s", "5d", "5 s", "1:00"}) {
+    for (const char* value :
+         {"", "0", "0s", "-1", "nan", "inf", "1e999", "1e300h", "1e9", "1e-320", "s", "5d", "5 s", "1:00"}) {
         expect_refused({"s.gltf", "--time", value}, "--time", value);
     }
     for (const char* value : {"", "0", "-1m", "nan", "inf"}) {
@@ -110,9 +125,28 @@ TEST(OptionValues, TimesHaveARange) {
 }
 
 TEST(OptionValues, SizesHaveARange) {
-    for (const char* value : {"", "x", "64", "64x", "x64", "-1x1", "1x-1", "0x1", "1x0", "1.5x1", "nanx1", "infx1", "65537x1",
-                              "1x65537", "2147483648x1", "4294967295x4294967295", "4294967296x1", "1x18446744073709551616",
-                              "65536x65536", "65536x2049", "64X64", "1x1x1"}) {
+    for (const char* value : {"",
+                              "x",
+                              "64",
+                              "64x",
+                              "x64",
+                              "-1x1",
+                              "1x-1",
+                              "0x1",
+                              "1x0",
+                              "1.5x1",
+                              "nanx1",
+                              "infx1",
+                              "65537x1",
+                              "1x65537",
+                              "2147483648x1",
+                              "4294967295x4294967295",
+                              "4294967296x1",
+                              "1x18446744073709551616",
+                              "65536x65536",
+                              "65536x2049",
+                              "64X64",
+                              "1x1x1"}) {
         expect_refused({"s.gltf", "--size", value}, "--size", value);
         expect_refused({"reference", "s.gltf", "-o", "r.exr", "--size", value}, "--size", value);
     }
@@ -131,7 +165,8 @@ TEST(OptionValues, OfARaceAndAReference) {
     for (const char* value : {"0", "10001", "4294967295", "4294967296", "-1", ""}) {
         expect_refused({"race", "s.gltf", "-o", "d", "--seeds", value}, "--seeds", value);
     }
-    for (const char* value : {"cppm:k=2", "cppm:k=nan", "cppm:knn=-1", "cppm:knn=4294967296", "cppm:k=", "cppm::", ","}) {
+    for (const char* value :
+         {"cppm:k=2", "cppm:k=nan", "cppm:knn=-1", "cppm:knn=4294967296", "cppm:k=", "cppm::", ","}) {
         expect_refused({"race", "s.gltf", "-o", "d", "--estimators", value}, "--", value);
     }
     for (const char* value : {"0", "127", "16777217", "4294967295", "4294967296", "-1", ""}) {

@@ -12,9 +12,7 @@ namespace {
 
 Options parse(const std::vector<std::string>& words) {
     std::vector<const char*> argv{"vkcppm"};
-    for (const std::string& word : words) {
-        argv.push_back(word.c_str());
-    }
+    for (const std::string& word : words) argv.push_back(word.c_str());
     return parse_options(int(argv.size()), argv.data());
 }
 
@@ -52,13 +50,61 @@ TEST(Options, DefaultsAreThePapers) {
 }
 
 TEST(Options, EveryOptionReachesItsSetting) {
-    const RenderOptions options = parse_render({
-        "-o", "o.exr", "--png", "p.png", "--exposure", "-1.5", "--stats", "s.json", "--estimator", "sppm",
-        "--iterations", "7", "--time", "2m", "--photons", "100", "--size", "32x16", "--camera", "top", "--seed", "5",
-        "--max-depth", "9", "--knn", "11", "--alpha", "0.5", "--k", "0.25", "--beta", "1.5", "--significance", "0.01",
-        "--rings", "3", "--sectors", "4", "--device", "uuid:00", "--quiet", "--verbose", "--validate",
-        "--environment", "sky.hdr", "--thin-glass", "solid", "--aperture", "0.01", "--focus-distance", "2.5",
-        "--reference", "r.exr", "--stop-at", "relmse_trimmed=3.5e-3"});
+    const RenderOptions options = parse_render({"-o",
+                                                "o.exr",
+                                                "--png",
+                                                "p.png",
+                                                "--exposure",
+                                                "-1.5",
+                                                "--stats",
+                                                "s.json",
+                                                "--estimator",
+                                                "sppm",
+                                                "--iterations",
+                                                "7",
+                                                "--time",
+                                                "2m",
+                                                "--photons",
+                                                "100",
+                                                "--size",
+                                                "32x16",
+                                                "--camera",
+                                                "top",
+                                                "--seed",
+                                                "5",
+                                                "--max-depth",
+                                                "9",
+                                                "--knn",
+                                                "11",
+                                                "--alpha",
+                                                "0.5",
+                                                "--k",
+                                                "0.25",
+                                                "--beta",
+                                                "1.5",
+                                                "--significance",
+                                                "0.01",
+                                                "--rings",
+                                                "3",
+                                                "--sectors",
+                                                "4",
+                                                "--device",
+                                                "uuid:00",
+                                                "--quiet",
+                                                "--verbose",
+                                                "--validate",
+                                                "--environment",
+                                                "sky.hdr",
+                                                "--thin-glass",
+                                                "solid",
+                                                "--aperture",
+                                                "0.01",
+                                                "--focus-distance",
+                                                "2.5",
+                                                "--reference",
+                                                "r.exr",
+                                                "--stop-at",
+                                                "relmse_trimmed=3.5e-3"});
     EXPECT_EQ(options.reference, "r.exr");
     ASSERT_TRUE(options.stop_at);
     EXPECT_EQ(options.stop_at->metric->name, "relmse_trimmed");
@@ -143,9 +189,11 @@ TEST(Options, AReferenceHasItsOwn) {
     EXPECT_EQ(timed.settings.render.iterations, unbounded_iterations);
 
     const auto all = std::get<ReferenceOptions>(
-        parse({"reference", "a.gltf", "-o", "r.exr", "--time", "2s", "--samples", "256", "--iterations", "40",
-               "--photons", "99", "--trust", "0.1", "--size", "20x10", "--seed", "7", "--max-depth", "9", "--half",
-               "--json", "--quiet", "--stats", "s.json", "--aperture", "0.1", "--focus-distance", "2"}));
+        parse({"reference", "a.gltf",       "-o",      "r.exr",     "--time",      "2s",      "--samples",
+               "256",       "--iterations", "40",      "--photons", "99",          "--trust", "0.1",
+               "--size",    "20x10",        "--seed",  "7",         "--max-depth", "9",       "--half",
+               "--json",    "--quiet",      "--stats", "s.json",    "--aperture",  "0.1",     "--focus-distance",
+               "2"}));
     EXPECT_EQ(all.settings.samples, 256u);
     EXPECT_EQ(all.settings.render.iterations, 40u);
     EXPECT_EQ(all.settings.render.photons, 99u);
@@ -161,12 +209,27 @@ TEST(Options, AReferenceHasItsOwn) {
 
 TEST(Options, HelpNamesEveryOptionAndEstimator) {
     const std::string help = std::get<TextOptions>(parse({"--help"})).text;
-    for (const char* name :
-         {"SCENE", "-o", "--estimator", "--iterations", "--time", "--photons", "--size", "--camera", "--seed",
-          "--max-depth", "--knn", "--alpha", "--k ", "--beta", "--significance", "--device", "--stats", "--quiet",
-          "--verbose", "--png", "--exposure", "--rings", "--sectors", "--validate", "--version", "cppm", "sppm:",
-          "sppm-kz", "race", "reference", "compare", "info", "devices", "73", "--environment", "--thin-glass", "--aperture",
-          "--focus-distance", "--reference", "--stop-at", "smape_trimmed", "clock"}) {
+    for (const char* name : {"SCENE",          "-o",
+                             "--estimator",    "--iterations",
+                             "--time",         "--photons",
+                             "--size",         "--camera",
+                             "--seed",         "--max-depth",
+                             "--knn",          "--alpha",
+                             "--k ",           "--beta",
+                             "--significance", "--device",
+                             "--stats",        "--quiet",
+                             "--verbose",      "--png",
+                             "--exposure",     "--rings",
+                             "--sectors",      "--validate",
+                             "--version",      "cppm",
+                             "sppm:",          "sppm-kz",
+                             "race",           "reference",
+                             "compare",        "info",
+                             "devices",        "73",
+                             "--environment",  "--thin-glass",
+                             "--aperture",     "--focus-distance",
+                             "--reference",    "--stop-at",
+                             "smape_trimmed",  "clock"}) {
         EXPECT_NE(help.find(name), std::string::npos) << name << " is not in\n" << help;
     }
     EXPECT_NE(std::get<TextOptions>(parse({"compare", "--help"})).text.find("REFERENCE"), std::string::npos);
@@ -195,11 +258,18 @@ TEST(Options, ARaceIsOfThreeForAMinute) {
 }
 
 TEST(Options, EntrantsHaveParametersOfTheirOwn) {
-    const RaceOptions options =
-        parse_race({"--estimators",
-                    "cppm:beta=1.5:k=0.7,sppm:alpha=0.5,ftest:rings=3:sectors=8:significance=1e-2:knn=20,cppm", "--k", "0.6",
-                    "--photons", "77", "--iterations", "9", "--seeds", "4", "--seed", "5", "--size", "8x4", "--reference",
-                    "r.exr", "--exposure", "2", "--device", "0", "--quiet"});
+    const RaceOptions options = parse_race(
+        {"--estimators", "cppm:beta=1.5:k=0.7,sppm:alpha=0.5,ftest:rings=3:sectors=8:significance=1e-2:knn=20,cppm",
+         "--k",          "0.6",
+         "--photons",    "77",
+         "--iterations", "9",
+         "--seeds",      "4",
+         "--seed",       "5",
+         "--size",       "8x4",
+         "--reference",  "r.exr",
+         "--exposure",   "2",
+         "--device",     "0",
+         "--quiet"});
     const std::vector<Entrant>& entrants = options.race.entrants;
     ASSERT_EQ(entrants.size(), 4u);
     EXPECT_EQ(entrants[0].name, "cppm:beta=1.5:k=0.7");
@@ -245,10 +315,14 @@ TEST(Options, RefuseEveryBadLineWithOptionValueAndRange) {
         {{}, {"SCENE"}},
         {{"s", "t"}, {"t"}},
         {{"race", "s"}, {"-o"}},
-        {{"race", "s", "-o", "d", "--reference", "r.exr", "--make-reference", "1m"}, {"--make-reference", "--reference"}},
+        {{"race", "s", "-o", "d", "--reference", "r.exr", "--make-reference", "1m"},
+         {"--make-reference", "--reference"}},
         {{"race", "s", "-o", "d", "--seeds", "0"}, {"--seeds", "0"}},
         {{"race", "s", "-o", "d", "--estimators", "cppm,nonsense"}, {"nonsense", "cppm-lf"}},
-        {{"race", "s", "-o", "d", "--estimators", "cppm,"  ",sppm"}, {"none of", "cppm"}},
+        {{"race", "s", "-o", "d", "--estimators",
+          "cppm,"
+          ",sppm"},
+         {"none of", "cppm"}},
         {{"race", "s", "-o", "d", "--estimators", "cppm:gamma=1"}, {"--estimators", "cppm:gamma=1", "beta", "gamma"}},
         {{"race", "s", "-o", "d", "--estimators", "cppm:photons=1"}, {"--estimators", "photons", "knn, alpha"}},
         {{"race", "s", "-o", "d", "--estimators", "cppm:beta"}, {"--estimators", "cppm:beta", "PARAMETER=VALUE"}},
@@ -327,9 +401,7 @@ TEST(Options, RefuseEveryBadLineWithOptionValueAndRange) {
     };
     for (const BadLine& line : lines) {
         std::string shown;
-        for (const std::string& word : line.words) {
-            shown += " " + word;
-        }
+        for (const std::string& word : line.words) shown += " " + word;
         const auto error = test::thrown_by([&] { parse(line.words); });
         ASSERT_TRUE(error) << "taken:" << shown;
         EXPECT_EQ(int(error->code()), 2) << shown;

@@ -83,8 +83,8 @@ TEST(Picture, ReadsAJpeg) {
     Texels red_above_blue;  // halves on blocks of the transform
     for (int y = 0; y < 16; ++y) {
         for (int x = 0; x < 8; ++x) {
-            const std::array<std::uint8_t, 3> rgb = y < 8 ? std::array<std::uint8_t, 3>{250, 20, 30}
-                                                          : std::array<std::uint8_t, 3>{10, 40, 240};
+            const std::array<std::uint8_t, 3> rgb =
+                y < 8 ? std::array<std::uint8_t, 3>{250, 20, 30} : std::array<std::uint8_t, 3>{10, 40, 240};
             red_above_blue.insert(red_above_blue.end(), rgb.begin(), rgb.end());
         }
     }

@@ -49,7 +49,10 @@ TEST(Progress, TellsTheLatestErrorAndHowOldItIs) {
               "16/64 iterations (25 %), 1 min 30 s left, relmse 0.0123");
     EXPECT_EQ(progress_text({32, 64, 30.0, error}, std::nullopt),
               "32/64 iterations (50 %), 30 s left, relmse 0.0123 after 16");
-    EXPECT_EQ(written(false, std::nullopt, [&](ProgressLine& line) { line.finish({16, 64, 4.0, error}); }),
+    EXPECT_EQ(written(false, std::nullopt,
+                      [&](ProgressLine& line) {
+                          line.finish({16, 64, 4.0, error});
+                      }),
               "16 iterations in 4.0 s, relmse 0.0123\n");
 }
 
@@ -60,10 +63,11 @@ TEST(Progress, IsALineEveryTenSecondsWhereNobodyWatches) {
         }
         line.finish({25, 25, 25.0});
     });
-    EXPECT_EQ(text, "1/25 iterations (4 %), 24 s left\n"
-                    "11/25 iterations (44 %), 14 s left\n"
-                    "21/25 iterations (84 %), 4 s left\n"
-                    "25 iterations in 25.0 s\n");
+    EXPECT_EQ(text,
+              "1/25 iterations (4 %), 24 s left\n"
+              "11/25 iterations (44 %), 14 s left\n"
+              "21/25 iterations (84 %), 4 s left\n"
+              "25 iterations in 25.0 s\n");
 }
 
 TEST(Progress, RewritesItsLineOnATerminalAndEndsIt) {
@@ -73,13 +77,17 @@ TEST(Progress, RewritesItsLineOnATerminalAndEndsIt) {
         line.update({3, 4, 3.0});
         line.finish({4, 4, 4.0});
     });
-    EXPECT_EQ(text, "\r1/4 iterations (25 %), 3 s left\x1b[K"
-                    "\r3/4 iterations (75 %), 1 s left\x1b[K"
-                    "\r4 iterations in 4.0 s\x1b[K\n");
+    EXPECT_EQ(text,
+              "\r1/4 iterations (25 %), 3 s left\x1b[K"
+              "\r3/4 iterations (75 %), 1 s left\x1b[K"
+              "\r4 iterations in 4.0 s\x1b[K\n");
 }
 
 TEST(Progress, EndsAnOpenLineWhereTheRenderThrows) {
-    EXPECT_EQ(written(true, std::nullopt, [](ProgressLine& line) { line.update({1, 4, 1.0}); }),
+    EXPECT_EQ(written(true, std::nullopt,
+                      [](ProgressLine& line) {
+                          line.update({1, 4, 1.0});
+                      }),
               "\r1/4 iterations (25 %), 3 s left\x1b[K\n");
     EXPECT_EQ(written(true, std::nullopt, [](ProgressLine&) {}), "");
 }

@@ -114,8 +114,8 @@ void expect_plots(const std::string& page, const std::string& metric, std::size_
 }
 
 TEST_F(RaceInBrowser, DrawsTenEntrants) {
-    const std::vector<std::string> names = {"cppm", "sppm", "appm", "cppm-lf", "cppm-gof", "cppm-fold", "cppm-null",
-                                            "ftest", "ftest-fold", "cppm:beta=1.5"};
+    const std::vector<std::string> names = {"cppm",      "sppm",      "appm",  "cppm-lf",    "cppm-gof",
+                                            "cppm-fold", "cppm-null", "ftest", "ftest-fold", "cppm:beta=1.5"};
     write(names);
     const std::string page = drawn("");
     expect_plots(page, "mse", 10, 7);
@@ -183,11 +183,11 @@ TEST_F(RaceInBrowser, TellsWhereItFails) {
     std::string page = test::read_bytes(folder_ / "index.html");
     page.replace(page.find("drawHead();\n"), 10, "undrawable");
     test::write_bytes(folder_ / "index.html", page);
-    const test::ProcessResult result = test::run_process(
-        {*browser_, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-         "--user-data-dir=" + (folder_ / "profile").string(), "--virtual-time-budget=5000", "--dump-dom",
-         "file://" + (folder_ / "index.html").string()},
-        folder_.path());
+    const test::ProcessResult result =
+        test::run_process({*browser_, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+                           "--user-data-dir=" + (folder_ / "profile").string(), "--virtual-time-budget=5000",
+                           "--dump-dom", "file://" + (folder_ / "index.html").string()},
+                          folder_.path());
     EXPECT_NE(between(result.out, "<div id=\"alert\"", "</div>").find("This page failed: "), std::string::npos);
 }
 

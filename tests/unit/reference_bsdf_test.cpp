@@ -57,8 +57,13 @@ std::vector<Case> cases() {
     everything.normal = glm::normalize(glm::dvec3(-0.15, 0.1, 1.0));
     Bsdf everything_inside = everything;
     everything_inside.front = false;
-    return {{"lambert", lambert}, {"metal", metal}, {"plastic", plastic}, {"frosted", frosted},
-            {"frosted inside", frosted_inside}, {"pane", pane}, {"everything", everything},
+    return {{"lambert", lambert},
+            {"metal", metal},
+            {"plastic", plastic},
+            {"frosted", frosted},
+            {"frosted inside", frosted_inside},
+            {"pane", pane},
+            {"everything", everything},
             {"everything inside", everything_inside}};
 }
 
@@ -74,8 +79,7 @@ glm::dvec3 above(std::mt19937_64& random) {
 }
 
 /// Midpoint rule over the sphere in polar angle and azimuth.
-template <typename Function>
-auto over_sphere(const Function& function, int steps) {
+template <typename Function> auto over_sphere(const Function& function, int steps) {
     decltype(function(glm::dvec3())) sum{};
     for (int i = 0; i < steps; ++i) {
         const double polar = pi * (i + 0.5) / steps, radius = std::sin(polar);
@@ -88,9 +92,7 @@ auto over_sphere(const Function& function, int steps) {
 }
 
 void expect_near(const glm::dvec3& value, const glm::dvec3& expected, double tolerance, const std::string& what) {
-    for (int c = 0; c < 3; ++c) {
-        EXPECT_NEAR(value[c], expected[c], tolerance) << what << ", channel " << c;
-    }
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(value[c], expected[c], tolerance) << what << ", channel " << c;
 }
 
 const glm::dvec3 slanted[] = {glm::normalize(glm::dvec3(0.1, 0.05, 1.0)), glm::normalize(glm::dvec3(-0.8, 0.3, 0.6)),
@@ -100,9 +102,7 @@ const glm::dvec3 slanted[] = {glm::normalize(glm::dvec3(0.1, 0.05, 1.0)), glm::n
 Bsdf seen_from(const Bsdf& bsdf, const glm::dvec3& wi) {
     Bsdf other = bsdf;
     if (wi.z < 0.0) {
-        for (glm::dvec3* normal : {&other.normal, &other.coat_normal, &other.geometric_normal}) {
-            *normal = -*normal;
-        }
+        for (glm::dvec3* normal : {&other.normal, &other.coat_normal, &other.geometric_normal}) *normal = -*normal;
         other.front = !bsdf.front;
     }
     return other;
@@ -127,9 +127,7 @@ TEST(ReferenceBsdf, Reciprocal) {
                 const bool one_sided = glm::dot(wo, bsdf.normal) <= 0.0 || glm::dot(wo, bsdf.coat_normal) <= 0.0 ||
                                        glm::dot(wi, bsdf.normal) * wi.z <= 0.0 ||
                                        glm::dot(wi, bsdf.coat_normal) * wi.z <= 0.0;
-                if (one_sided) {
-                    continue;
-                }
+                if (one_sided) continue;
                 counted += there.x > 0.0;
                 expect_near(there * ratio * ratio, here, 1e-9 * std::max(1e-3, there.x), name);
             }
@@ -145,14 +143,10 @@ TEST(ReferenceBsdf, DensityIntegratesToWhatSamplingKeeps) {
         for (const glm::dvec3& wo : slanted) {
             const double kept = over_sphere([&](const glm::dvec3& wi) { return bsdf.pdf(wo, wi); }, 400);
             int found = 0;
-            for (int i = 0; i < samples; ++i) {
-                found += bsdf.sample(wo, random).has_value();
-            }
+            for (int i = 0; i < samples; ++i) found += bsdf.sample(wo, random).has_value();
             const double share = double(found) / samples;
             EXPECT_NEAR(kept, share, 4.0 * std::sqrt(share * (1.0 - share) / samples) + 1e-3) << name << " " << wo.z;
-            if (name == "lambert" || name == "pane") {
-                EXPECT_GT(kept, name == "lambert" ? 0.9999 : 0.7) << name;
-            }
+            if (name == "lambert" || name == "pane") EXPECT_GT(kept, name == "lambert" ? 0.9999 : 0.7) << name;
         }
     }
 }
@@ -225,9 +219,7 @@ TEST(ReferenceBsdf, NeverCreatesEnergyWithoutADiffuseBase) {
     // With one it does: glTF's base under a coat loses what the coat reflects at h, not all that it reflects.
     for (auto [name, bsdf] : cases()) {
         bsdf.base_color = bsdf.specular_color = glm::dvec3(1.0);
-        if (bsdf.metallic < 1.0) {
-            bsdf.transmission = 1.0;
-        }
+        if (bsdf.metallic < 1.0) bsdf.transmission = 1.0;
         for (const glm::dvec3& wo : slanted) {
             EXPECT_LE(bsdf.directional_albedo(wo).x, 1.0 + 1e-6) << name << ", wo.z " << wo.z;
         }
@@ -318,9 +310,7 @@ TEST(ReferenceBsdf, SmallAlphaIsTheDelta) {
     // Light from directions near the mirrored and the refracted one, weighted by a function of the direction.
     const auto probe = [](const glm::dvec3& w) { return 1.0 + w.x + 0.5 * w.y + 0.25 * w.z; };
     for (const auto& [name, rough] : cases()) {
-        if (name == "lambert") {
-            continue;
-        }
+        if (name == "lambert") continue;
         Bsdf nearly = rough, delta = rough;
         nearly.alpha = 1e-4;
         delta.alpha = 0.0;

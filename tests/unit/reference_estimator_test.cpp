@@ -29,9 +29,7 @@ const Cells twelve{2, 6};
 Tallies draw(const std::vector<double>& weights, int total, std::mt19937_64& random) {
     std::discrete_distribution<std::size_t> cell(weights.begin(), weights.end());
     Tallies tallies(weights.size(), 0);
-    for (int i = 0; i < total; ++i) {
-        ++tallies[cell(random)];
-    }
+    for (int i = 0; i < total; ++i) ++tallies[cell(random)];
     return tallies;
 }
 
@@ -40,15 +38,16 @@ Tallies draw(const std::vector<double>& weights, int total, std::mt19937_64& ran
 TEST(ReferenceSchedule, KnausZwickerMatchesPublishedRadii) {
     double area = 1.0;
     std::uint64_t iteration = 0;
-    for (const auto& [after, expected, tolerance] :
-         {std::tuple{1u, 0.8333, 5e-5}, {2u, 0.7407, 5e-5}, {3u, 0.6790, 5e-5}, {10u, 0.4931, 5e-5},
-          {100u, 0.2376, 5e-5}, {1000u, 0.11072, 5e-6}}) {
-        while (iteration < after) {
-            area *= sppm_kz_area_factor(++iteration, alpha);
-        }
+    for (const auto& [after, expected, tolerance] : {std::tuple{1u, 0.8333, 5e-5},
+                                                     {2u, 0.7407, 5e-5},
+                                                     {3u, 0.6790, 5e-5},
+                                                     {10u, 0.4931, 5e-5},
+                                                     {100u, 0.2376, 5e-5},
+                                                     {1000u, 0.11072, 5e-6}}) {
+        while (iteration < after) area *= sppm_kz_area_factor(++iteration, alpha);
         EXPECT_NEAR(area, expected, tolerance) << "after " << after << " iterations";
-        const double closed_form = std::exp(std::lgamma(after + 1 + alpha) - std::lgamma(1 + alpha) -
-                                            std::lgamma(after + 2.0));
+        const double closed_form =
+            std::exp(std::lgamma(after + 1 + alpha) - std::lgamma(1 + alpha) - std::lgamma(after + 2.0));
         EXPECT_NEAR(area / closed_form, 1.0, 1e-10) << "after " << after << " iterations";
     }
 }
@@ -56,9 +55,12 @@ TEST(ReferenceSchedule, KnausZwickerMatchesPublishedRadii) {
 TEST(ReferenceSchedule, HachisukaJensenMatchesPublishedRadii) {
     double radius_squared = 1.0, count = 0.0;
     int iteration = 0;
-    for (const auto& [after, expected, tolerance] :
-         {std::tuple{1, 0.6667, 5e-5}, {2, 0.5556, 5e-5}, {3, 0.4938, 5e-5}, {10, 0.3390, 5e-5}, {100, 0.1589, 5e-5},
-          {1000, 0.07384, 5e-6}}) {
+    for (const auto& [after, expected, tolerance] : {std::tuple{1, 0.6667, 5e-5},
+                                                     {2, 0.5556, 5e-5},
+                                                     {3, 0.4938, 5e-5},
+                                                     {10, 0.3390, 5e-5},
+                                                     {100, 0.1589, 5e-5},
+                                                     {1000, 0.07384, 5e-6}}) {
         for (; iteration < after; ++iteration) {
             const double found = 1000.0 * radius_squared;  // constant density
             const auto update = sppm_update(count, found, alpha);
@@ -104,17 +106,18 @@ TEST(ReferenceConstantTest, EqualTalliesPassAndOneFullCellFails) {
 
 TEST(ReferenceConstantTest, PValuesAgreeWithTabulatedQuantiles) {
     std::mt19937_64 random(2);
-    struct Case { Cells cells; double critical; };
-    for (const Case& c : {Case{{2, 6}, 19.67514}, Case{{1, 6}, 11.0705}, Case{{1, 3}, 5.99146},
-                          Case{{2, 3}, 11.0705}}) {
+    struct Case {
+        Cells cells;
+        double critical;
+    };
+    for (const Case& c :
+         {Case{{2, 6}, 19.67514}, Case{{1, 6}, 11.0705}, Case{{1, 3}, 5.99146}, Case{{2, 3}, 11.0705}}) {
         const std::size_t n = std::size_t(c.cells.rings) * c.cells.sectors;
         int rejected = 0;
         for (int trial = 0; trial < 2000; ++trial) {
             const Tallies tallies = draw(std::vector<double>(n, 1.0), 40, random);
             double squares = 0.0;
-            for (const double o : tallies) {
-                squares += o * o;
-            }
+            for (const double o : tallies) squares += o * o;
             const double statistic = n / 40.0 * squares - 40.0;
             const bool reject = statistic >= c.critical;
             EXPECT_EQ(constant_p_value(tallies, c.cells) <= 0.05, reject) << "V = " << statistic << ", cells " << n;
@@ -147,8 +150,9 @@ TEST(ReferenceLinearTest, CellProbabilitiesMatchTheCorrectedClosedForm) {
             const auto p = linear_cell_probabilities(cells, 0.1, -0.2);
             for (std::size_t i = 0; i < p.size(); ++i) {
                 const double angle = (2.0 * (i % sectors) + 1.0) * pi / sectors;
-                const double closed_form = amplitude(cells, int(i / sectors)) *
-                                               (0.1 * std::cos(angle) - 0.2 * std::sin(angle)) + 1.0 / p.size();
+                const double closed_form =
+                    amplitude(cells, int(i / sectors)) * (0.1 * std::cos(angle) - 0.2 * std::sin(angle)) +
+                    1.0 / p.size();
                 EXPECT_NEAR(p[i], closed_form, 1e-15) << rings << " x " << sectors << ", cell " << i;
             }
         }
@@ -168,7 +172,10 @@ TEST(ReferenceLinearTest, SlopesOfTheCells) {
 
 TEST(ReferenceLinearTest, PValuesAgreeWithClosedFormAndTabulatedQuantiles) {
     std::mt19937_64 random(3);
-    struct Case { Cells cells; double critical; };
+    struct Case {
+        Cells cells;
+        double critical;
+    };
     int rejected = 0, trials = 0;
     for (const Case& c : {Case{{2, 6}, 16.91898}, Case{{1, 6}, 7.81473}}) {
         const std::size_t n = std::size_t(c.cells.rings) * c.cells.sectors;
@@ -191,8 +198,9 @@ TEST(ReferenceLinearTest, PValuesAgreeWithClosedFormAndTabulatedQuantiles) {
             double statistic = 0.0;
             for (std::size_t i = 0; i < n; ++i) {
                 const double angle = (2.0 * (i % 6) + 1.0) * pi / 6.0;
-                const double p = amplitude(c.cells, int(i / 6)) * limit / norm *
-                                     (k1 * std::cos(angle) + k2 * std::sin(angle)) + 1.0 / n;
+                const double p =
+                    amplitude(c.cells, int(i / 6)) * limit / norm * (k1 * std::cos(angle) + k2 * std::sin(angle)) +
+                    1.0 / n;
                 statistic += std::pow(tallies[i] - total * p, 2) / (total * p);
             }
             const bool reject = statistic >= c.critical;
@@ -233,9 +241,7 @@ TEST(ReferenceCppm, WithOneRingARejectionTakesK) {
 TEST(ReferenceCppm, FoldingAndTheLinearTestKeepALinearField) {
     const auto weights = linear_cell_probabilities(twelve, 0.9 / pi, 0.0);
     Tallies tallies;
-    for (const double p : weights) {
-        tallies.push_back(std::uint32_t(std::lround(6000 * p)));
-    }
+    for (const double p : weights) tallies.push_back(std::uint32_t(std::lround(6000 * p)));
     EXPECT_TRUE(cppm_update(tallies, twelve, 6000, 10, {}).clear);
     EXPECT_EQ(cppm_fold_update(tallies, twelve, 6000, 10, {}), Decision{});
     EXPECT_EQ(cppm_lf_update(tallies, twelve, 6000, 10, {}), Decision{});
@@ -253,9 +259,7 @@ TEST(ReferenceCppm, FalseRejectionsOnAUniformFieldAreThePublishedOnes) {
         double total = 0.0;
         for (int iteration = 1; iteration <= 1000; ++iteration) {
             const int found = photons(random);
-            for (int i = 0; i < found; ++i) {
-                ++tallies[cell(random)];
-            }
+            for (int i = 0; i < found; ++i) ++tallies[cell(random)];
             total += found;
             if (cppm_update(tallies, twelve, total, 10.0, {}).clear) {
                 rejected_by_10 += iteration <= 10;
@@ -274,11 +278,15 @@ TEST(ReferenceCppm, FalseRejectionsOnAUniformFieldAreThePublishedOnes) {
 
 TEST(ReferenceFTest, PValuesMatchTabulatedQuantiles) {
     // One cell in c stands out by d in every sample; each cell alternates by +-1 around its mean, so F is known.
-    struct Case { Cells cells; std::uint32_t samples; double critical; };
-    for (const Case& c : {Case{{2, 6}, 10, 1.878}, Case{{2, 6}, 20, 1.831}, Case{{1, 6}, 10, 2.386},
-                          Case{{1, 6}, 20, 2.294}}) {
+    struct Case {
+        Cells cells;
+        std::uint32_t samples;
+        double critical;
+    };
+    for (const Case& c :
+         {Case{{2, 6}, 10, 1.878}, Case{{2, 6}, 20, 1.831}, Case{{1, 6}, 10, 2.386}, Case{{1, 6}, 20, 2.294}}) {
         const double n = c.cells.rings * c.cells.sectors, m = c.samples;
-        const double within = n * m / (n * (m - 1.0));                    // mean square of the +-1
+        const double within = n * m / (n * (m - 1.0));                     // mean square of the +-1
         const double stands_out = std::sqrt(c.critical * within * n / m);  // m d^2 (1 - 1/n) / (n - 1) = F within
         FTestState state;
         state.samples = c.samples;
@@ -372,8 +380,8 @@ double over_disc(const std::function<double(double, double)>& integrand) {
 }
 
 TEST(ReferenceAppm, KernelConstants) {
-    for (const Kernel* kernel : {&box_kernel, &cone_kernel, &epanechnikov_kernel, &biweight_kernel,
-                                 &smootherstep_kernel}) {
+    for (const Kernel* kernel :
+         {&box_kernel, &cone_kernel, &epanechnikov_kernel, &biweight_kernel, &smootherstep_kernel}) {
         const auto value = [&](double x, double y) { return kernel->value(std::hypot(x, y)); };
         EXPECT_NEAR(over_disc(value), 1.0, 1e-9);
         EXPECT_NEAR(over_disc([&](double x, double y) { return x * x * value(x, y); }), kernel->second_moment, 1e-9);

@@ -59,9 +59,7 @@ TEST(ReferenceIntersect, HitPointLiesOnTheRayAndOnTheTriangle) {
     for (int i = 0; i < 5000; ++i) {
         const Ray ray{{place(random), place(random), place(random)}, {place(random), place(random), place(random)}};
         const auto hit = nearest_hit(scene, ray);
-        if (!hit) {
-            continue;
-        }
+        if (!hit) continue;
         ++hits;
         const auto& v = scene.triangles[hit->triangle].vertex;
         const glm::dvec3 on_triangle = hit->barycentric.x * scene.positions[v[0]] +
@@ -105,9 +103,7 @@ TEST(ReferenceBvh, AgreesWithAllTriangles) {
     }
 }
 
-GatherPoint floor_point() {
-    return {glm::dvec3(0.0), {0, 1, 0}, {1, 0, 0}, {0, 0, 1}, 2, 6};
-}
+GatherPoint floor_point() { return {glm::dvec3(0.0), {0, 1, 0}, {1, 0, 0}, {0, 0, 1}, 2, 6}; }
 
 Photon photon_at(double radius, double angle, double flux = 1.0) {
     return {{radius * std::cos(angle), 0.0, radius * std::sin(angle)}, {0, 1, 0}, glm::dvec3(flux)};

@@ -23,7 +23,7 @@ namespace {
 using std::numbers::pi;
 using test::expect_mean;
 
-constexpr double narrow = 1e-5;            // rad, the view of a camera that looks at a point
+constexpr double narrow = 1e-5;  // rad, the view of a camera that looks at a point
 const glm::dvec3 origin(0.0);
 
 std::uint32_t add(Scene& scene, const Material& material) {
@@ -120,9 +120,7 @@ TEST(ReferenceMaterials, SolidGlassVanishesInAConstantEnvironment) {
 TEST(ReferenceMaterials, EnvironmentFacesItsDirections) {
     Scene scene;
     scene.environment = Environment{{4, 2}, {}};
-    for (int i = 0; i < 8; ++i) {
-        scene.environment->radiance.emplace_back(float(i + 1));
-    }
+    for (int i = 0; i < 8; ++i) scene.environment->radiance.emplace_back(float(i + 1));
     const auto seen = [&](const glm::dvec3& direction) {
         scene.cameras.clear();
         test::add_camera(scene, origin, direction, narrow);

@@ -75,7 +75,8 @@ TEST(ReferenceFresnel, Dielectric) {
                 1e-14);
     const double inside = std::asin(std::sin(50.0 * degree) / 1.5);
     EXPECT_NEAR(fresnel_dielectric(std::cos(50.0 * degree), 1.5), fresnel_dielectric(std::cos(inside), 1.0 / 1.5),
-                1e-14) << "the same from both sides";
+                1e-14)
+        << "the same from both sides";
 }
 
 TEST(ReferencePathTracer, FurnaceHasTheSameRadianceEverywhere) {
@@ -159,8 +160,8 @@ TEST(ReferencePathTracer, PunctualLightsOverAPlane) {
     light.outer_cone = 40.0 * degree;
     const double off_axis = std::atan2(0.6, 0.8) - 30.0 * degree;
     light.direction = {-std::sin(off_axis), 0.0, -std::cos(off_axis)};
-    const double falloff = (std::cos(30.0 * degree) - std::cos(40.0 * degree)) /
-                           (std::cos(20.0 * degree) - std::cos(40.0 * degree));
+    const double falloff =
+        (std::cos(30.0 * degree) - std::cos(40.0 * degree)) / (std::cos(20.0 * degree) - std::cos(40.0 * degree));
     expect(light, falloff * falloff * 0.8 / 4.0);
     light.kind = PunctualLight::Kind::directional;
     light.direction = {0.6, 0.0, -0.8};
