@@ -15,9 +15,9 @@
 #include "app/console.h"
 #include "app/load.h"
 #include "core/fnv1a.h"
-#include "render/features.h"
-#include "render/flatten.h"
-#include "render/surface.h"
+#include "flat/features.h"
+#include "flat/flatten.h"
+#include "flat/surface.h"
 
 namespace vkcppm {
 namespace {

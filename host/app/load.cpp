@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "io/environment.h"
-#include "scene/diagnosis.h"
-#include "scene/glass.h"
-#include "scene/gltf.h"
+#include "scene/diagnosis/diagnosis.h"
+#include "scene/diagnosis/glass.h"
+#include "scene/gltf/gltf.h"
 
 namespace vkcppm {
 

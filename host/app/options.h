@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/metrics.h"
-#include "render/race.h"
-#include "render/reference.h"
+#include "study/race.h"
+#include "study/reference.h"
 #include "render/settings.h"
 #include "vk/device.h"
 

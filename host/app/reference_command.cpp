@@ -15,7 +15,7 @@
 #include "app/validation.h"
 #include "io/atomic_file.h"
 #include "io/exr.h"
-#include "render/reference.h"
+#include "study/reference.h"
 
 namespace vkcppm {
 namespace {

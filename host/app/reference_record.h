@@ -5,7 +5,7 @@
 
 #include "app/options.h"
 #include "io/exr.h"
-#include "render/reference.h"
+#include "study/reference.h"
 #include "scene/scene.h"
 
 namespace vkcppm {

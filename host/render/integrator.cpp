@@ -11,7 +11,7 @@
 
 #include "core/error.h"
 #include "render/estimators.h"
-#include "render/features.h"
+#include "flat/features.h"
 #include "render/grid.h"
 #include "render/kernels.h"
 #include "render/memory.h"

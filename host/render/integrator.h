@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/image.h"
-#include "render/flatten.h"
+#include "flat/flatten.h"
 #include "render/kernel_choice.h"
 #include "render/report.h"
 #include "render/scene_buffers.h"

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "render/features.h"
+#include "flat/features.h"
 #include "render/kernels.h"
 #include "shared/bindings.h"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "core/image.h"
-#include "render/flatten.h"
+#include "flat/flatten.h"
 #include "render/report.h"
 #include "render/scene_buffers.h"
 #include "render/settings.h"

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/process.h"
-#include "render/flatten.h"
+#include "flat/flatten.h"
 #include "render/integrator.h"
 #include "render/submission.h"
 #include "vk/device.h"

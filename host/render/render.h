@@ -67,13 +67,6 @@ struct Rendering {
     std::vector<std::string> warnings;  // what went wrong on the way, one line each
 };
 
-/// Throws Error(usage) where a setting is out of range, with its name, value and limit.
-/// `scene` resolves what depends on it: the size of the picture and the camera.
-Settings resolve_settings(const Settings& settings, const Scene& scene);
-
-/// The camera of resolved settings, which hold its index.
-const Camera& camera_of(const Settings& settings, const Scene& scene);
-
 /// Renders `scene` by the estimator of the settings. Throws Error on a setting out of range (usage), on a scene or
 /// image that does not fit the device (out_of_device_memory), on a lost device (device_lost), on a reference of another
 /// size (usage). Where it is measured, submissions end at snapshots, or with every iteration where it stops at an

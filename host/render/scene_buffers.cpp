@@ -9,9 +9,9 @@
 #include <glm/geometric.hpp>
 
 #include "core/error.h"
-#include "render/features.h"
+#include "flat/features.h"
 #include "render/kernel_choice.h"
-#include "render/lights.h"
+#include "flat/lights.h"
 #include "shared/bindings.h"
 
 namespace vkcppm {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "render/flatten.h"
+#include "flat/flatten.h"
 #include "render/settings.h"
 #include "vk/buffer.h"
 #include "vk/device.h"

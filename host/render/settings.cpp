@@ -9,7 +9,6 @@
 
 #include "core/error.h"
 #include "render/estimators.h"
-#include "render/render.h"
 #include "shared/types.h"
 
 namespace vkcppm {
@@ -108,6 +107,15 @@ Settings resolve_settings(const Settings& settings, const Scene& scene) {
                                                  resolved.size->height, resolved.size->pixels(), max_pixels));
     }
     return resolved;
+}
+
+std::vector<Feature> features_of(const Settings& settings) {
+    std::vector<Feature> features;
+    if (settings.aovs) features.push_back({FEATURE_AOVS, "further channels", "--aovs"});
+    if (settings.aperture > 0.0)
+        features.push_back({FEATURE_LENS, "depth of field", fmt::format("--aperture {:g}", settings.aperture)});
+    if (settings.caustics) features.push_back({FEATURE_SPLIT, "caustics alone", "a reference"});
+    return features;
 }
 
 const Camera& camera_of(const Settings& settings, const Scene& scene) {

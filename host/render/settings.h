@@ -4,8 +4,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/image.h"
+#include "flat/feature.h"
+#include "scene/scene.h"
 
 namespace vkcppm {
 
@@ -30,9 +33,19 @@ struct Settings {
     double significance = 0.05;      // of every test, 0 < x < 1
     std::uint32_t rings = 2;         // n_a
     std::uint32_t sectors = 6;       // n_s
-    std::optional<double> caustics;  // caustics alone, for a reference (render/reference.h): the starting radius in
+    std::optional<double> caustics;  // caustics alone, for a reference (study/reference.h): the starting radius in
                                      // footprints of the pixel, a quarter of it at a photon's first rough surface
     bool aovs = false;               // also depth, albedo, normal and the state of every pixel
 };
+
+/// Throws Error(usage) where a setting is out of range, with its name, value and limit.
+/// `scene` resolves what depends on it: the size of the picture and the camera.
+Settings resolve_settings(const Settings& settings, const Scene& scene);
+
+/// The camera of resolved settings, which hold its index.
+const Camera& camera_of(const Settings& settings, const Scene& scene);
+
+/// What the settings ask of the kernels.
+std::vector<Feature> features_of(const Settings& settings);
 
 }  // namespace vkcppm

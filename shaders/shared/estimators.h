@@ -14,12 +14,12 @@
 #define ESTIMATOR_FTEST_FOLD 9
 
 // Moments that appm keeps of a pixel, rows of the moment buffer.
-#define APPM_SECOND_MOMENT_NOW 0  // this iteration's (1/J) sum Y^2 K_r
-#define APPM_LAPLACIAN_NOW 1      // this iteration's (1/J) sum Y D_rd
-#define APPM_SECOND_MOMENT 2      // mean over iterations: V
-#define APPM_LAPLACIAN 3          // mean over iterations: Delta
-#define APPM_FIRST_RADIUS2 4      // r_1^2
-#define APPM_SECOND_MOMENT_LOW 5  // low parts of the means
+#define APPM_SECOND_MOMENT_NOW 0   // this iteration's (1/J) sum Y^2 K_r
+#define APPM_LAPLACIAN_NOW 1       // this iteration's (1/J) sum Y D_rd
+#define APPM_SECOND_MOMENT 2       // mean over iterations: V
+#define APPM_LAPLACIAN 3           // mean over iterations: Delta
+#define APPM_FIRST_RADIUS2 4       // r_1^2
+#define APPM_SECOND_MOMENT_LOW 5   // low parts of the means
 #define APPM_LAPLACIAN_LOW 6
 #define APPM_MOMENTS 7
 

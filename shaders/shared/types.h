@@ -21,49 +21,48 @@ using uint = std::uint32_t;
 #endif
 
 // Specialization constants.
-#define SPEC_WORKGROUP 0   // invocations a work group
-#define SPEC_STACK 1       // entries of the traversal stack: the exact need of this scene's BVH
-#define SPEC_ESTIMATOR 2   // ESTIMATOR_*
-#define SPEC_RINGS 3       // n_a
-#define SPEC_SECTORS 4     // n_s, even
-#define SPEC_FEATURES 5    // FEATURE_* of this scene
-#define SPEC_DIGIT_BITS 6  // of one radix sort pass
-#define SPEC_NODE_BITS 7   // of the largest index of a node of this scene's BVH
-#define SPEC_LEVELS 8      // of the grid that there is room for
-#define SPEC_WAITS 9       // 1: lanes of the photon pass wait for the longest ray of their SIMD group
+#define SPEC_WORKGROUP 0  // invocations a work group
+#define SPEC_STACK 1      // entries of the traversal stack: the exact need of this scene's BVH
+#define SPEC_ESTIMATOR 2  // ESTIMATOR_*
+#define SPEC_RINGS 3      // n_a
+#define SPEC_SECTORS 4    // n_s, even
+#define SPEC_FEATURES 5   // FEATURE_* of this scene
+#define SPEC_DIGIT_BITS 6 // of one radix sort pass
+#define SPEC_NODE_BITS 7  // of the largest index of a node of this scene's BVH
+#define SPEC_LEVELS 8     // of the grid that there is room for
+#define SPEC_WAITS 9      // 1: lanes of the photon pass wait for the longest ray of their SIMD group
 
 // Features of a scene: a pipeline holds only what its scene needs, and buffers that only a feature reads are empty
 // without it.
-#define FEATURE_REFLECTION 0x1u    // a lobe of reflection: metal, coat or glass
-#define FEATURE_TRANSMISSION 0x2u  // light passes a surface
-#define FEATURE_SMOOTH 0x4u        // photons land where the shading normal is not the geometric one
-#define FEATURE_AOVS 0x8u          // depth, albedo and normal are asked for
-#define FEATURE_GLOSS 0x10u        // gathering weighs every photon by its direction: a coat, or a rough lobe
-#define FEATURE_ROUGH 0x20u        // a lobe of roughness above 0
-#define FEATURE_COAT 0x40u         // a dielectric coat over a diffuse base
+#define FEATURE_REFLECTION 0x1u        // a lobe of reflection: metal, coat or glass
+#define FEATURE_TRANSMISSION 0x2u      // light passes a surface
+#define FEATURE_SMOOTH 0x4u            // photons land where the shading normal is not the geometric one
+#define FEATURE_AOVS 0x8u              // depth, albedo and normal are asked for
+#define FEATURE_GLOSS 0x10u            // gathering weighs every photon by its direction: a coat, or a rough lobe
+#define FEATURE_ROUGH 0x20u            // a lobe of roughness above 0
+#define FEATURE_COAT 0x40u             // a dielectric coat over a diffuse base
 #define FEATURE_CLEARCOAT 0x80u
-#define FEATURE_THIN 0x100u    // thin-walled transmission
-#define FEATURE_VOLUME 0x200u  // absorption inside solids
+#define FEATURE_THIN 0x100u            // thin-walled transmission
+#define FEATURE_VOLUME 0x200u          // absorption inside solids
 #define FEATURE_DISPERSION 0x400u
 #define FEATURE_TEXTURES 0x800u
 #define FEATURE_NORMAL_MAPS 0x1000u
-#define FEATURE_TANGENTS 0x2000u  // tangents of the file, for normal maps
+#define FEATURE_TANGENTS 0x2000u       // tangents of the file, for normal maps
 #define FEATURE_VERTEX_COLORS 0x4000u
-#define FEATURE_ALPHA 0x8000u  // surfaces that are partly not there
+#define FEATURE_ALPHA 0x8000u          // surfaces that are partly not there
 #define FEATURE_UNLIT 0x10000u
-#define FEATURE_LENS 0x20000u  // depth of field is asked for
+#define FEATURE_LENS 0x20000u          // depth of field is asked for
 #define FEATURE_AREA_LIGHTS 0x40000u
 #define FEATURE_TEXTURED_LIGHTS 0x80000u
 #define FEATURE_POINT_LIGHTS 0x100000u
 #define FEATURE_SPOT_LIGHTS 0x200000u
 #define FEATURE_DIRECTIONAL_LIGHTS 0x400000u
 #define FEATURE_ENVIRONMENT 0x800000u
-#define FEATURE_SPLIT \
-    0x1000000u  // light is split in two: photons bring caustics and what is lit at less than \
-                // near_lights from its lamp, as fixtures are, paths the rest: render/reference.h
+#define FEATURE_SPLIT 0x1000000u       // light is split in two: photons bring caustics and what is lit at less than
+                                       // near_lights from its lamp, as fixtures are, paths the rest: study/reference.h
 // Eye paths ask for lights where they may follow a rough lobe. Where light is split photons bring caustics alone, and
 // of those an eye path finds what it meets by delta lobes after it has followed a rough one.
-#define ASKS_FOR_LIGHTS(features) (((features)&FEATURE_ROUGH) != 0u && ((features)&FEATURE_SPLIT) == 0u)
+#define ASKS_FOR_LIGHTS(features) (((features) & FEATURE_ROUGH) != 0u && ((features) & FEATURE_SPLIT) == 0u)
 #define FEATURE_PUNCTUAL_LIGHTS (FEATURE_POINT_LIGHTS | FEATURE_SPOT_LIGHTS | FEATURE_DIRECTIONAL_LIGHTS)
 
 #define MAX_RINGS 4
@@ -91,11 +90,11 @@ using uint = std::uint32_t;
 #define TEXTURE_COUNT 10
 
 // Flags of a TextureLookup.
-#define TEXTURE_WRAP_S 0x3u  // WRAP_*
-#define TEXTURE_WRAP_T 0xcu  // WRAP_* << 2
+#define TEXTURE_WRAP_S 0x3u      // WRAP_*
+#define TEXTURE_WRAP_T 0xcu      // WRAP_* << 2
 #define TEXTURE_NEAREST 0x10u
 #define TEXTURE_SECOND_UV 0x20u
-#define TEXTURE_SRGB 0x40u  // its red, green and blue are sRGB-encoded
+#define TEXTURE_SRGB 0x40u       // its red, green and blue are sRGB-encoded
 #define WRAP_REPEAT 0u
 #define WRAP_MIRRORED 1u
 #define WRAP_CLAMP 2u
@@ -121,15 +120,15 @@ using uint = std::uint32_t;
 // c.
 struct BvhNode {
     vec3 origin;
-    uint exponents;  // biased exponents of the cell size, x | y << 8 | z << 16; bit 24 + c: there is a child c
-    uint low_x;      // byte c: child c
+    uint exponents;    // biased exponents of the cell size, x | y << 8 | z << 16; bit 24 + c: there is a child c
+    uint low_x;        // byte c: child c
     uint low_y;
     uint low_z;
     uint high_x;
     uint high_y;
     uint high_z;
-    uint children;  // those that are nodes come first, and stand side by side: the index of the first of them, or
-                    // of this node itself where all are leaves
+    uint children;     // those that are nodes come first, and stand side by side: the index of the first of them, or
+                       // of this node itself where all are leaves
     uint unused;
     uint leaves[2];         // where all children are leaves: their first triangle; byte c: what comes before child c
                             // | its triangles << 4
@@ -139,34 +138,34 @@ struct BvhNode {
 // Moeller-Trumbore form, 48 bytes, read as 3 vec4 texels.
 struct TriangleGeometry {
     vec3 v0;
-    float error;    // bound of the rounding error of a point on it: rays start this far off its plane
-    vec3 e1;        // v1 - v0
-    float slack_u;  // bounds of the rounding of barycentrics, for a ray origin at distance 1 and a determinant of 1
-    vec3 e2;        // v2 - v0
+    float error;       // bound of the rounding error of a point on it: rays start this far off its plane
+    vec3 e1;           // v1 - v0
+    float slack_u;     // bounds of the rounding of barycentrics, for a ray origin at distance 1 and a determinant of 1
+    vec3 e2;           // v2 - v0
     float slack_v;
 };
 
 // 16 bytes, read as 1 uvec4 texel.
 struct TriangleShading {
-    uint normal[3];  // octahedral snorm16x2
-    uint material;   // index | SHADING_FLAT
+    uint normal[3];    // octahedral snorm16x2
+    uint material;     // index | SHADING_FLAT
 };
 
 // 144 bytes, read as 9 uvec4 texels, and of those only what the scene's features need. Factors as in glTF; a texture
 // multiplies them.
 struct SurfaceMaterial {
-    vec3 color;     // base colour
-    uint flags;     // SURFACE_*
-    vec3 emission;  // radiance, W m^-2 sr^-1
+    vec3 color;            // base colour
+    uint flags;            // SURFACE_*
+    vec3 emission;         // radiance, W m^-2 sr^-1
     float specular;
     float metallic;
-    float roughness;  // alpha = roughness^2
+    float roughness;       // alpha = roughness^2
     float transmission;
-    float ior;  // at 587.6 nm; very large for an index of infinity
+    float ior;             // at 587.6 nm; very large for an index of infinity
     vec3 specular_color;
     float opacity;
-    vec3 absorption;  // of the volume, 1 / frame unit
-    float cauchy;     // B of n(l) = A + B / l^2, micrometres squared
+    vec3 absorption;       // of the volume, 1 / frame unit
+    float cauchy;          // B of n(l) = A + B / l^2, micrometres squared
     float clearcoat;
     float clearcoat_roughness;
     float alpha_cutoff;
@@ -178,11 +177,11 @@ struct SurfaceMaterial {
 
 // 48 bytes, read as 3 uvec4 texels. uv' = (matrix.xy . uv, matrix.zw . uv) + offset.
 struct TextureLookup {
-    uint first;  // texel of its image
+    uint first;            // texel of its image
     uint width;
     uint height;
-    uint flags;   // TEXTURE_*
-    vec4 matrix;  // rows
+    uint flags;            // TEXTURE_*
+    vec4 matrix;           // rows
     vec2 offset;
     uint unused[2];
 };
@@ -190,50 +189,50 @@ struct TextureLookup {
 // One entry of the alias table of lights; 96 bytes, read as 6 uvec4 texels, of which photons read two for textured
 // lights only. A path that starts here carries `power`: flux of the light / its probability.
 struct Light {
-    vec3 position;      // triangle: v0; point, spot: position
-    uint kind;          // LIGHT_*
-    vec3 e1;            // triangle: edge; spot, directional: unit direction of travel
-    float keep;         // alias table: probability to keep this entry
-    vec3 e2;            // triangle: edge; spot: (1 - cos inner, 1 - cos outer, -)
-    uint alias_entry;   // alias table: the other entry
-    vec3 power;         // W (frame-scaled); directional, environment: into the scene; environment: the mean channel
-                        // alone, times the colour of the pixel drawn and entry_area over its mean in the pixel
-    uint double_sided;  // triangle
-    vec2 corner[3];     // textured: barycentrics of its corners in the triangle that it is a part of
-    uint triangle;      // triangle: into the leaf-ordered ones; textured: that which it is a part of
-    uint textured;      // its radiance or alpha comes from textures
+    vec3 position;     // triangle: v0; point, spot: position
+    uint kind;         // LIGHT_*
+    vec3 e1;           // triangle: edge; spot, directional: unit direction of travel
+    float keep;        // alias table: probability to keep this entry
+    vec3 e2;           // triangle: edge; spot: (1 - cos inner, 1 - cos outer, -)
+    uint alias_entry;  // alias table: the other entry
+    vec3 power;        // W (frame-scaled); directional, environment: into the scene; environment: the mean channel
+                       // alone, times the colour of the pixel drawn and entry_area over its mean in the pixel
+    uint double_sided; // triangle
+    vec2 corner[3];    // textured: barycentrics of its corners in the triangle that it is a part of
+    uint triangle;     // triangle: into the leaf-ordered ones; textured: that which it is a part of
+    uint textured;     // its radiance or alpha comes from textures
 };
 
 // A stored photon: what the distance test reads (16 bytes) and what an accepted photon adds (16 bytes).
 struct Photon {
     vec3 position;
-    uint normal;  // geometric, on the side it arrived at, octahedral snorm16x2
+    uint normal;       // geometric, on the side it arrived at, octahedral snorm16x2
 };
 struct PhotonFlux {
-    vec3 power;      // W (frame-scaled), not yet divided by the number of emitted paths; red with its sign bit set:
-                     // the photon comes straight from a punctual light by way of mirrors and smooth glass alone,
-                     // and at least one: no eye path finds its light. Green with its sign bit set, where light is
-                     // split: its first surface that is not smooth
-    uint direction;  // unit, towards where it came from, octahedral snorm16x2
+    vec3 power;        // W (frame-scaled), not yet divided by the number of emitted paths; red with its sign bit set:
+                       // the photon comes straight from a punctual light by way of mirrors and smooth glass alone,
+                       // and at least one: no eye path finds its light. Green with its sign bit set, where light is
+                       // split: its first surface that is not smooth
+    uint direction;    // unit, towards where it came from, octahedral snorm16x2
 };
 
 // Where an eye path ended. 3 records of 16 bytes, one array each, and a fourth in glossy scenes.
 struct HitPosition {
-    vec3 position;  // scene frame; while the path is unfinished and goes on: origin of the next ray
-    uint state;     // HIT_* | diffuse albedo, 10 bits a channel, << 2: what the F-tests weigh photons by
+    vec3 position;     // scene frame; while the path is unfinished and goes on: origin of the next ray
+    uint state;        // HIT_* | diffuse albedo, 10 bits a channel, << 2: what the F-tests weigh photons by
 };
 struct HitWeight {
-    vec3 weight;  // path throughput * albedo / pi (glossy scenes: / pi alone); unfinished: path throughput
-    uint normal;  // shading normal on the eye's side, octahedral; unfinished: bounces | PATH_*
+    vec3 weight;       // path throughput * albedo / pi (glossy scenes: / pi alone); unfinished: path throughput
+    uint normal;       // shading normal on the eye's side, octahedral; unfinished: bounces | PATH_*
 };
 struct HitEmission {
-    vec3 emission;    // throughput * radiance of emitters met on the way
-    float footprint;  // radius of the pixel's footprint at the hit, scene frame; unfinished: length so far
+    vec3 emission;     // throughput * radiance of emitters met on the way
+    float footprint;   // radius of the pixel's footprint at the hit, scene frame; unfinished: length so far
 };
 struct HitSurface {
-    uint triangle;  // what the BSDF is made from again
+    uint triangle;     // what the BSDF is made from again
     vec2 barycentric;
-    uint outgoing;  // unit, towards the eye, octahedral snorm16x2
+    uint outgoing;     // unit, towards the eye, octahedral snorm16x2
 };
 #define HIT_NONE 0u        // nothing to gather: the path left the scene or was absorbed
 #define HIT_DIFFUSE 1u     // gathers photons that arrive on the side it is seen from
@@ -246,59 +245,57 @@ struct HitSurface {
 #define PATH_STRAIGHT 0x800u    // it has met nothing but delta lobes since it left the eye or a punctual light
 #define PATH_DISPERSED 0x1000u  // its wavelength is drawn
 #define PATH_DIRECT 0x2000u     // a photon that has met nothing yet since it left a punctual light or a triangle
-#define PATH_SCATTERED \
-    0x4000u                // where light is split: a photon since it met another lobe than a delta, but for the \
-                           // surface near its lamp; an eye path whose last lobe was no delta, and one before it neither
-#define PATH_SEEN 0x4000u  // an eye path that has met a surface that is there
-#define PATH_CAUSTIC \
-    0x8000u  // a photon that left its light by way of a delta lobe, or of a surface near a lamp; an \
-             // eye path whose last lobe was a delta and one before was not
+#define PATH_SCATTERED 0x4000u  // where light is split: a photon since it met another lobe than a delta, but for the
+                                // surface near its lamp; an eye path whose last lobe was no delta, and one before it neither
+#define PATH_SEEN 0x4000u       // an eye path that has met a surface that is there
+#define PATH_CAUSTIC 0x8000u    // a photon that left its light by way of a delta lobe, or of a surface near a lamp; an
+                                // eye path whose last lobe was a delta and one before was not
 #define PATH_MEDIUM_SHIFT 16u
 #define PATH_NO_MEDIUM 0xffffu  // also the largest number of materials
 
 // A ray that asks whether a light is seen.
 struct LightRay {
     vec3 origin;
-    float distance;  // left to the light; 0: there is no ray
+    float distance;    // left to the light; 0: there is no ray
     vec3 direction;
-    uint triangle;  // of the light, which the ray may meet; NO_TRIANGLE: a light of no area
-    vec3 light;     // what it adds to the picture where nothing is in between
+    uint triangle;     // of the light, which the ray may meet; NO_TRIANGLE: a light of no area
+    vec3 light;        // what it adds to the picture where nothing is in between
 };
 #define NO_TRIANGLE 0xffffffffu
 
 // Sum of one pass of the gather over a pixel's disc, read as 2 texels. While an eye path is unfinished: the rest of
 // what it remembers.
 struct Gathered {
-    vec3 flux;    // sum of photon power * correction, without the hit's weight; unfinished: direction of the ray
-    uint count;   // accepted photons; unfinished: the state that the path ends in, HIT_UNFINISHED: it goes on
-    vec3 excess;  // what rounding has left too much in flux (Kahan 1965); unfinished: the density with which rough
-                  // lobes gave the direction, the length since the last vertex, 0
+    vec3 flux;         // sum of photon power * correction, without the hit's weight; unfinished: direction of the ray
+    uint count;        // accepted photons; unfinished: the state that the path ends in, HIT_UNFINISHED: it goes on
+    vec3 excess;       // what rounding has left too much in flux (Kahan 1965); unfinished: the density with which rough
+                       // lobes gave the direction, the length since the last vertex, 0
     uint unused;
 };
 
 // What a pixel remembers between iterations, read as 3 texels.
 struct PixelState {
-    float radius2;  // R^2 in force, 0 before the pixel first saw a diffuse surface
-    uint seeded;    // 1 once the k-th nearest photon gave the radius; 0: radius2 is the cap
-    float count;    // sppm: N of Hachisuka and Jensen; sppm-kz, appm: iterations since the radius was seeded;
-                    // ftest: iterations since the last rejection
-    uint total;     // photons accepted since the last reset of the tally; stays at its largest value
-    float batch;    // B, photons to see before a test
+    float radius2;     // R^2 in force, 0 before the pixel first saw a diffuse surface
+    uint seeded;       // 1 once the k-th nearest photon gave the radius; 0: radius2 is the cap
+    float count;       // sppm: N of Hachisuka and Jensen; sppm-kz, appm: iterations since the radius was seeded;
+                       // ftest: iterations since the last rejection
+    uint total;        // photons accepted since the last reset of the tally; stays at its largest value
+    float batch;       // B, photons to see before a test
     uint rejections;
-    uint photons;       // accepted in all; stays at its largest value
-    uint seen;          // iterations in which the pixel saw a diffuse surface
-    float statistic;    // of the last test of the whole disc, over its threshold
-    float radius2_low;  // radius2 + radius2_low: R^2 where a schedule shrinks it by little in every iteration
-    float count_low;    // count + count_low: the count, beyond what a float holds
+    uint photons;      // accepted in all; stays at its largest value
+    uint seen;         // iterations in which the pixel saw a diffuse surface
+    float statistic;   // of the last test of the whole disc, over its threshold
+    float radius2_low; // radius2 + radius2_low: R^2 where a schedule shrinks it by little in every iteration
+    float count_low;   // count + count_low: the count, beyond what a float holds
     uint unused;
 };
 
 // What a picture's first surfaces are like: sums over the iterations in which the pixel met one.
 // Each in two floats, as Film.
 struct Aovs {
-    vec3 albedo;  // base colour
-    vec3 normal;  // shading, world axes
-    float depth;  // along the camera's axis, scene frame
+    vec3 albedo;       // base colour
+    vec3 normal;       // shading, world axes
+    float depth;       // along the camera's axis, scene frame
     uint hits;
     vec3 albedo_low;
     vec3 normal_low;
@@ -314,14 +311,14 @@ struct Film {
 // A light path in flight at the end of a round, one a lane.
 struct PathState {
     vec3 origin;
-    uint path;  // NO_PATH: none in flight
+    uint path;         // NO_PATH: none in flight
     vec3 direction;
-    uint memory;  // bounces | PATH_*
+    uint memory;       // bounces | PATH_*
     vec3 power;
-    uint stored;   // photons this lane has stored
-    float power0;  // largest channel of the power at emission, for Russian roulette
-    uint begin;    // stored before this path
-    uint next;     // path that the SIMD group takes next
+    uint stored;       // photons this lane has stored
+    float power0;      // largest channel of the power at emission, for Russian roulette
+    uint begin;        // stored before this path
+    uint next;         // path that the SIMD group takes next
 };
 #define NO_PATH 0xffffffffu
 
@@ -329,39 +326,39 @@ struct PathState {
 // ray to a light, where one is asked for.
 struct TraceState {
     vec3 origin;
-    uint memory;  // bounces | PATH_*
+    uint memory;           // bounces | PATH_*
     vec3 direction;
-    float density;  // 1/sr, with which the direction was drawn; DELTA after the camera and delta lobes
+    float density;         // 1/sr, with which the direction was drawn; DELTA after the camera and delta lobes
     vec3 throughput;
-    float distance;  // since the last vertex
-    vec3 radiance;   // of this path so far
-    uint done;       // paths of this launch
-    vec3 sum;        //   and their radiance
-    uint ended;      // 1: the path ends with the ray to the light
+    float distance;        // since the last vertex
+    vec3 radiance;         // of this path so far
+    uint done;             // paths of this launch
+    vec3 sum;              //   and their radiance
+    uint ended;            // 1: the path ends with the ray to the light
     LightRay light_ray;
 };
 
 // Where a resumable walk over the grid goes on.
 struct Cursor {
-    uvec3 cell;   // first cell of the segment; x: CURSOR_START or CURSOR_DONE
-    uint photon;  // photons of the segment that were seen
+    uvec3 cell;        // first cell of the segment; x: CURSOR_START or CURSOR_DONE
+    uint photon;       // photons of the segment that were seen
 };
 #define CURSOR_START 0xffffffffu
 #define CURSOR_DONE 0xfffffffeu
 
-#define GRID_LEVELS 4  // at most
+#define GRID_LEVELS 4      // at most
 
 // The grid in force. Every level has cells of its own size and holds all photons: discs look at those of the level
 // whose cells suit them.
 struct Grid {
     vec3 origin;
-    uint levels;              // in use, from the finest on
-    uvec4 dims[GRID_LEVELS];  // cells an axis; w: 0 dense rows, else mask of the hash table
-    float cell[GRID_LEVELS];  // side
+    uint levels;                      // in use, from the finest on
+    uvec4 dims[GRID_LEVELS];          // cells an axis; w: 0 dense rows, else mask of the hash table
+    float cell[GRID_LEVELS];          // side
     float inverse_cell[GRID_LEVELS];
-    float reach[GRID_LEVELS];  // largest radius that looks here; the largest float from the last in use on
-    uint first[GRID_LEVELS];   // its first entry of the table of cell starts
-    uint entries;              // of that table, in use: at most params.cells
+    float reach[GRID_LEVELS];         // largest radius that looks here; the largest float from the last in use on
+    uint first[GRID_LEVELS];          // its first entry of the table of cell starts
+    uint entries;                     // of that table, in use: at most params.cells
 };
 
 // Passes that can run out of their step budget.
@@ -373,79 +370,79 @@ struct Grid {
 #define PASS_CAPACITY 16u  // a lane stored more photons than it has slots
 #define PASS_LEVELS 64u    // the grid is to have more levels than there is room for
 
-#define RADIUS_BINS 64  // histogram of log2 R: bin = 2 * (log2 R + 24), clamped
+#define RADIUS_BINS 64     // histogram of log2 R: bin = 2 * (log2 R + 24), clamped
 
 struct Status {
-    uint blocked;    // PASS_* bits: passes after these do nothing until the host has seen to them
-    uint completed;  // iterations whose update has run
-    uint capacity;   // largest number of photons that one lane wanted to store
-    uint stuck;      // rays that need more than a whole budget: the scene cannot be traced
-    uint invalid;    // contributions dropped because they were not finite
-    uint rays;       // traced since the host last cleared it, low word
-    uint stored;     // photons stored since the host last cleared it
+    uint blocked;      // PASS_* bits: passes after these do nothing until the host has seen to them
+    uint completed;    // iterations whose update has run
+    uint capacity;     // largest number of photons that one lane wanted to store
+    uint stuck;        // rays that need more than a whole budget: the scene cannot be traced
+    uint invalid;      // contributions dropped because they were not finite
+    uint rays;         // traced since the host last cleared it, low word
+    uint stored;       // photons stored since the host last cleared it
     uint rays_high;
-    uint levels;          // that the grid is to have
-    uint searches;        // pixels that gather in this iteration without a seeded radius
+    uint levels;       // that the grid is to have
+    uint searches;     // pixels that gather in this iteration without a seeded radius
     uvec3 search_groups;  // work groups for them
     // From here on what the next plan of the grid is made from, and so what a checkpoint holds.
-    uint photons;                        // stored in the last iteration
-    uint radius_histogram[RADIUS_BINS];  // pixels that gather
-    uint photon_histogram[RADIUS_BINS];  // photons in their discs, low word
+    uint photons;      // stored in the last iteration
+    uint radius_histogram[RADIUS_BINS];     // pixels that gather
+    uint photon_histogram[RADIUS_BINS];     // photons in their discs, low word
     uint photon_histogram_high[RADIUS_BINS];
 };
 
 // Per render.
 struct Params {
-    vec3 eye;  // where the lens is, plus `start` along the axis
+    vec3 eye;              // where the lens is, plus `start` along the axis
     uint width;
-    vec3 right;  // half of the image plane at distance 1
+    vec3 right;            // half of the image plane at distance 1
     uint height;
     vec3 up;
     uint seed;
-    vec3 forward;        // unit
-    float pixel_radius;  // radius of a pixel's footprint at distance 1
-    vec3 bounds_low;     // of the triangles, padded
-    uint photons;        // paths an iteration
+    vec3 forward;          // unit
+    float pixel_radius;    // radius of a pixel's footprint at distance 1
+    vec3 bounds_low;       // of the triangles, padded
+    uint photons;          // paths an iteration
     vec3 bounds_high;
-    uint photons_per_lane;  // paths
+    uint photons_per_lane; // paths
     uint photon_lanes;
     uint photon_capacity;  // slots a lane
     float bounds_radius;   // of a sphere about the origin, padded alike
     uint max_depth;
     uint light_count;
-    float near_lights;  // frame units; 0 where light is not split
-    float light_power;  // of all lights, mean channel, W (frame-scaled): what the alias table is in proportion to
-    uvec2 environment;  // its columns and rows
-    float lens_radius;  // frame units; at focus_distance along the axis a point is sharp
+    float near_lights;     // frame units; 0 where light is not split
+    float light_power;     // of all lights, mean channel, W (frame-scaled): what the alias table is in proportion to
+    uvec2 environment;     // its columns and rows
+    float lens_radius;     // frame units; at focus_distance along the axis a point is sharp
     float focus_distance;
-    float start;       // depth at which eye rays begin, frame units: 0 but for an eye far from the scene
-    uint step_budget;  // loop trips of one invocation of a resumable kernel
+    float start;           // depth at which eye rays begin, frame units: 0 but for an eye far from the scene
+    uint step_budget;      // loop trips of one invocation of a resumable kernel
     uint knn;
-    float radius_cap;     // largest starting radius
-    float radius_floor;   // the cap by footprint never goes below this: a disc of k photons at mean density
-    float footprint_cap;  // starting radius in footprints of the pixel
-    float inverse_paths;  // 1 / photons; 0 where nothing emits
-    float flux_unit;      // power of two, times light_power in [1, 2): with it squares of fluxes are within floats
+    float radius_cap;      // largest starting radius
+    float radius_floor;    // the cap by footprint never goes below this: a disc of k photons at mean density
+    float footprint_cap;   // starting radius in footprints of the pixel
+    float inverse_paths;   // 1 / photons; 0 where nothing emits
+    float flux_unit;       // power of two, times light_power in [1, 2): with it squares of fluxes are within floats
     float alpha;
     float k;
     float beta;
-    uint cells;                         // capacity of the cell table, a power of two
-    uint grid_levels;                   // that there is room for now
-    uint most_levels;                   //   and can be
-    uint sort_lanes;                    // columns of the radix histogram
-    uint scan_blocks;                   // a multiple of the work group
-    float threshold[MAX_RINGS];         // chi-squared quantile for the disc of the first i + 1 rings
-    vec2 sector_edge[MAX_SECTORS / 2];  // unit vectors at 2 pi s / n_s, s < n_s / 2
-    vec2 sector_centre[MAX_SECTORS];    // unit vectors at pi (2 s + 1) / n_s
+    uint cells;            // capacity of the cell table, a power of two
+    uint grid_levels;      // that there is room for now
+    uint most_levels;      //   and can be
+    uint sort_lanes;       // columns of the radix histogram
+    uint scan_blocks;      // a multiple of the work group
+    float threshold[MAX_RINGS];          // chi-squared quantile for the disc of the first i + 1 rings
+    vec2 sector_edge[MAX_SECTORS / 2];   // unit vectors at 2 pi s / n_s, s < n_s / 2
+    vec2 sector_centre[MAX_SECTORS];     // unit vectors at pi (2 s + 1) / n_s
 };
 
 // Per launch.
 struct Launch {
     uint iteration;
-    uint round;       // of a resumable pass
-    uint last_round;  // 1: unfinished work blocks the passes that follow
-    uint offset;      // scan: first element; radix: shift of the digit; update: 1 counts the radii
-    uint count;       // scan: elements; path: paths a pixel; grid_key: level; radix: 0 reads pairs_a, 1 pairs_b
+    uint round;        // of a resumable pass
+    uint last_round;   // 1: unfinished work blocks the passes that follow
+    uint offset;       // scan: first element; radix: shift of the digit; update: 1 counts the radii
+    uint count;        // scan: elements; path: paths a pixel; grid_key: level; radix: 0 reads pairs_a, 1 pairs_b
 };
 
 #ifdef __cplusplus

@@ -13,7 +13,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "render/features.h"
+#include "flat/features.h"
 #include "support/rig.h"
 #include "support/shapes.h"
 

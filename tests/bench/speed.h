@@ -13,7 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/process.h"
-#include "render/flatten.h"
+#include "flat/flatten.h"
 #include "render/integrator.h"
 #include "render/settings.h"
 #include "scene/scene.h"

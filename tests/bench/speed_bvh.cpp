@@ -7,7 +7,7 @@
 #include <tbb/task_arena.h>
 
 #include "bench/speed.h"
-#include "render/bvh.h"
+#include "flat/bvh.h"
 
 namespace vkcppm::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "bench/speed.h"
-#include "scene/gltf.h"
+#include "scene/gltf/gltf.h"
 #include "support/scenes.h"
 
 namespace vkcppm::bench {

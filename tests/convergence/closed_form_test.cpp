@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "render/render.h"
-#include "scene/gltf.h"
+#include "scene/gltf/gltf.h"
 #include "support/gpu.h"
 
 namespace vkcppm::test {

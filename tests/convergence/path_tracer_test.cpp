@@ -12,12 +12,12 @@
 #include <nlohmann/json.hpp>
 
 #include "core/metrics.h"
-#include "render/flatten.h"
-#include "render/moments.h"
+#include "flat/flatten.h"
+#include "study/moments.h"
 #include "render/path_tracer.h"
-#include "render/reference.h"
+#include "study/reference.h"
 #include "render/render.h"
-#include "render/surface.h"
+#include "flat/surface.h"
 #include "support/blocks.h"
 #include "support/gpu.h"
 #include "support/rooms.h"

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/glass.h"
+#include "scene/diagnosis/glass.h"
 #include "support/blocks.h"
 #include "support/scenes.h"
 

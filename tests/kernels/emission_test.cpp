@@ -18,9 +18,9 @@
 
 #include "kernels/probe.h"
 #include "reference/texture.h"
-#include "render/features.h"
-#include "render/flatten.h"
-#include "render/lights.h"
+#include "flat/features.h"
+#include "flat/flatten.h"
+#include "flat/lights.h"
 #include "support/gpu.h"
 #include "support/shapes.h"
 #include "support/statistics.h"

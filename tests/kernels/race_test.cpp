@@ -1,6 +1,6 @@
 // A race is fair: what its entrants share is the same to the last bit, and it can be run again.
 
-#include "render/race.h"
+#include "study/race.h"
 
 #include <algorithm>
 #include <string>

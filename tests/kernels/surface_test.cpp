@@ -11,7 +11,7 @@
 
 #include "kernels/probe.h"
 #include "reference/octahedral.h"
-#include "render/flatten.h"
+#include "flat/flatten.h"
 #include "support/gpu.h"
 #include "support/shapes.h"
 

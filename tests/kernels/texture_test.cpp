@@ -15,8 +15,8 @@
 #include "kernels/probe.h"
 #include "reference/surface.h"
 #include "reference/texture.h"
-#include "render/features.h"
-#include "render/flatten.h"
+#include "flat/features.h"
+#include "flat/flatten.h"
 #include "support/gpu.h"
 #include "support/shapes.h"
 

@@ -16,7 +16,7 @@
 #include "kernels/probe.h"
 #include "reference/embree.h"
 #include "reference/intersect.h"
-#include "render/flatten.h"
+#include "flat/flatten.h"
 #include "support/gpu.h"
 #include "support/shapes.h"
 

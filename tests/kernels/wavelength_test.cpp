@@ -7,8 +7,8 @@
 
 #include "kernels/probe.h"
 #include "reference/dispersion.h"
-#include "render/surface.h"
-#include "render/textures.h"
+#include "flat/surface.h"
+#include "flat/textures.h"
 #include "support/gpu.h"
 #include "support/statistics.h"
 

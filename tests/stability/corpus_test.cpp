@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "render/features.h"
-#include "scene/gltf.h"
+#include "flat/features.h"
+#include "scene/gltf/gltf.h"
 #include "support/names.h"
 #include "support/rig.h"
 #include "support/scenes.h"

@@ -7,7 +7,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "render/flatten.h"
+#include "flat/flatten.h"
 #include "render/integrator.h"
 #include "render/settings.h"
 #include "shared/bindings.h"

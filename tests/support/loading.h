@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "scene/gltf.h"
+#include "scene/gltf/gltf.h"
 #include "support/files.h"
 #include "support/gltf_builder.h"
 #include "support/temporary_folder.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "render/race.h"
+#include "study/race.h"
 
 namespace vkcppm::test {
 

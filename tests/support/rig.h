@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/flatten.h"
+#include "flat/flatten.h"
 #include "render/integrator.h"
 #include "render/render.h"
 #include "scene/scene.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/gltf.h"
+#include "scene/gltf/gltf.h"
 
 namespace vkcppm::test {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "render/flatten.h"
+#include "flat/flatten.h"
 #include "render/integrator.h"
 #include "render/settings.h"
 #include "vk/device.h"

@@ -1,4 +1,4 @@
-#include "scene/accessor.h"
+#include "scene/gltf/accessor.h"
 
 #include <limits>
 

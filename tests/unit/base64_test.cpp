@@ -1,4 +1,4 @@
-#include "core/base64.h"
+#include "app/race/base64.h"
 
 #include <string>
 

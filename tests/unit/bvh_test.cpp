@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
-#include "render/bvh.h"
+#include "flat/bvh.h"
 
 namespace vkcppm {
 namespace {

@@ -1,6 +1,6 @@
 // Which triangles in one place are kept, and which are moved apart, and how far.
 
-#include "render/coincidence.h"
+#include "flat/coincidence.h"
 
 #include <algorithm>
 #include <vector>
@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "render/flatten.h"
+#include "flat/flatten.h"
 #include "support/shapes.h"
 
 namespace vkcppm::test {

@@ -1,6 +1,6 @@
 // Every reason for which a caustic may be missing is told where it is there, and is not where it is not.
 
-#include "scene/diagnosis.h"
+#include "scene/diagnosis/diagnosis.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -11,7 +11,7 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
-#include "scene/glass.h"
+#include "scene/diagnosis/glass.h"
 #include "support/scenes.h"
 #include "support/shapes.h"
 

@@ -1,4 +1,4 @@
-#include "core/estimate.h"
+#include "study/estimate.h"
 
 #include <array>
 #include <cmath>

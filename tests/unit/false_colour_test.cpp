@@ -1,4 +1,4 @@
-#include "core/false_colour.h"
+#include "study/false_colour.h"
 
 #include <cmath>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "scene/glass.h"
+#include "scene/diagnosis/glass.h"
 
 #include <algorithm>
 

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "scene/gltf.h"
+#include "scene/gltf/gltf.h"
 #include "support/files.h"
 #include "support/scenes.h"
 #include "support/soundness.h"

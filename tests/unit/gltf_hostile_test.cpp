@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "scene/gltf.h"
-#include "scene/gltf_limits.h"
+#include "scene/gltf/gltf.h"
+#include "scene/gltf/limits.h"
 #include "support/loading.h"
 #include "support/temporary_folder.h"
 #include "support/thrown.h"

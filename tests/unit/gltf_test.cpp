@@ -1,6 +1,6 @@
 // Every part of the glTF loader against values worked out by hand.
 
-#include "scene/gltf.h"
+#include "scene/gltf/gltf.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/flatten.h"
+#include "flat/flatten.h"
 #include "support/shapes.h"
 
 namespace vkcppm::test {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "io/exr.h"
-#include "scene/gltf.h"
+#include "scene/gltf/gltf.h"
 #include "support/files.h"
 #include "support/gltf_builder.h"
 #include "support/temporary_folder.h"

@@ -1,4 +1,4 @@
-#include "render/moments.h"
+#include "study/moments.h"
 
 #include <random>
 

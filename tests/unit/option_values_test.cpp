@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "app/options.h"
-#include "render/reference.h"
+#include "study/reference.h"
 #include "render/render.h"
 #include "support/scenes.h"
 #include "support/thrown.h"

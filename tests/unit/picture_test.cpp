@@ -1,6 +1,6 @@
 // PNG and JPEG files to texels: every layout of the formats, and what is broken.
 
-#include "scene/picture.h"
+#include "scene/gltf/picture.h"
 
 #include <stdexcept>
 #include <string>

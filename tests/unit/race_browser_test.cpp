@@ -12,9 +12,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "app/race_page.h"
-#include "app/race_pictures.h"
-#include "app/race_record.h"
+#include "app/race/page.h"
+#include "app/race/pictures.h"
+#include "app/race/record.h"
 #include "support/files.h"
 #include "support/process.h"
 #include "support/race_result.h"

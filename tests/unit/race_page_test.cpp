@@ -1,6 +1,6 @@
 // The files of a race: page, JSON and CSV.
 
-#include "app/race_page.h"
+#include "app/race/page.h"
 
 #include <cmath>
 #include <regex>
@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "app/race_pictures.h"
-#include "app/race_record.h"
+#include "app/race/pictures.h"
+#include "app/race/record.h"
 #include "core/metrics.h"
 #include "support/race_result.h"
 

@@ -1,4 +1,4 @@
-#include "core/seeds.h"
+#include "study/seeds.h"
 
 #include <cmath>
 #include <vector>

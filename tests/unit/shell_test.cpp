@@ -1,4 +1,4 @@
-#include "scene/shell.h"
+#include "scene/diagnosis/shell.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "core/winner.h"
+#include "study/winner.h"
 
 #include <cmath>
 #include <vector>

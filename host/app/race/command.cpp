@@ -1,0 +1,210 @@
+#include <cstdio>
+#include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include "app/commands.h"
+#include "app/console.h"
+#include "app/interrupt.h"
+#include "app/load.h"
+#include "app/pipeline_cache.h"
+#include "app/progress.h"
+#include "app/race/page.h"
+#include "app/race/pictures.h"
+#include "app/race/record.h"
+#include "app/record.h"
+#include "app/reference.h"
+#include "app/reference_record.h"
+#include "app/validation.h"
+#include "core/error.h"
+#include "io/atomic_file.h"
+#include "io/exr.h"
+#include "io/png.h"
+#include "study/race.h"
+#include "study/reference.h"
+
+namespace vkcppm {
+namespace fs = std::filesystem;
+namespace {
+
+/// The reference that was asked for, else the one that lies with the scene.
+fs::path find_reference(const RaceOptions& options) {
+    if (options.reference) return *options.reference;
+    const fs::path& scene = options.scene.file;
+    const fs::path file = scene.parent_path() / "references" / (scene.stem().string() + ".exr");
+    if (!fs::exists(file)) {
+        throw Error(ExitCode::usage,
+                    fmt::format("nothing to measure against: there is no {}; name a picture of {} by --reference, or "
+                                "let --make-reference make one",
+                                file.string(), scene.string()));
+    }
+    return file;
+}
+
+/// A line for every attribute of a reference of this program that says that it shows something else than the race.
+std::vector<std::string> mismatches(const RaceInput& input, const ExrAttributes& wanted) {
+    std::vector<std::string> lines;
+    for (const auto& [name, value] : input.reference_attributes) {
+        for (const char* seen : {"scene_hash", "thin_glass", "camera", "aperture", "focus_distance"}) {
+            if (name != std::string("vkcppm.") + seen) continue;
+            for (const auto& [same, other] : wanted) {
+                if (same == name && other != value) {
+                    lines.push_back(
+                        fmt::format("{} has {} {}, the race {}", input.reference.string(), seen, value, other));
+                }
+            }
+        }
+    }
+    return lines;
+}
+
+void make_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) {
+        throw Error(ExitCode::cannot_write,
+                    fmt::format("cannot make the folder {}: {}", folder.string(), error.message()));
+    }
+    check_writable(folder / "index.html");
+}
+
+/// "37 %, seed 1 of 3, 2 min 5 s left; MSE cppm 0.00123, sppm 0.00234"
+std::string race_text(const RaceProgress& progress) {
+    std::string text = fmt::format("{:.0f} %", 100.0 * progress.done);
+    const auto out = std::back_inserter(text);
+    if (progress.seeds > 1) fmt::format_to(out, ", seed {} of {}", progress.seed + 1, progress.seeds);
+    if (progress.done > 0.0) {
+        const double left = progress.wall_seconds * (1.0 - progress.done) / progress.done;
+        fmt::format_to(out, ", {} left", duration_text(left));
+    }
+    const Metric& metric = metrics().front();
+    std::vector<std::string> errors;
+    for (const RaceRun& run : progress.runs) {
+        if (run.curves.empty() || run.curves.back().empty()) continue;
+        errors.push_back(fmt::format("{} {:.3g}", run.entrant.name, metric.of(run.curves.back().back().error)));
+    }
+    fmt::format_to(out, "; {} {}", metric.title, fmt::join(errors, ", "));
+    return text;
+}
+
+/// Makes the reference of the race and writes it to DIR/reference.exr, with its attributes into `input`. Its seed is
+/// the one after those of the race: photons that both saw would tie their errors.
+Image make_race_reference(const RaceOptions& options, RaceInput& input, const RaceSettings& race, Device& device) {
+    ReferenceOptions wanted;
+    wanted.scene = options.scene;
+    wanted.settings.render = race.entrants.front().settings;
+    wanted.settings.render.seed += race.seeds;
+    wanted.settings.render.iterations = unbounded_iterations;
+    wanted.settings.render.seconds = options.make_reference;
+    wanted.settings.samples = unbounded_samples;
+    ProgressLine line(stderr, ::isatty(STDERR_FILENO) == 1, std::nullopt);
+    const auto refine = [&](const ReferenceProgress& progress) {
+        if (!options.quiet) {
+            line.update(progress.wall_seconds,
+                        fmt::format("reference: {} of {}, relMSE about {:.2g}", duration_text(progress.wall_seconds),
+                                    duration_text(*options.make_reference), progress.relmse));
+        }
+        return !interrupted();
+    };
+    const Reference reference = make_reference(input.scene, wanted.settings, device, refine);
+    if (!options.quiet) line.finish_with(fmt::format("reference: relMSE about {:.2g}", reference.relmse));
+    print_warnings(reference.warnings);
+    input.reference_attributes = reference_attributes(wanted, input.scene, reference);
+    write_exr(input.reference, reference_channels(reference), input.reference_attributes);
+    return reference.mean;
+}
+
+RaceResult race_with_progress(const Scene& scene, const RaceOptions& options, const RaceSettings& race,
+                              const Image& reference, Device& device) {
+    ProgressLine line(stderr, ::isatty(STDERR_FILENO) == 1, std::nullopt);
+    double wall = 0.0;
+    RaceResult result = run_race(scene, race, reference, device, [&](const RaceProgress& progress) {
+        wall = progress.wall_seconds;
+        if (!options.quiet) line.update(wall, race_text(progress));
+        return !interrupted();
+    });
+    if (!options.quiet) {
+        line.finish_with(
+            fmt::format("{} entrants, {} seeds in {:.1f} s", result.runs.size(), result.seeds.size(), wall));
+    }
+    return result;
+}
+
+void write_pictures(const RaceOptions& options, const RaceInput& input, const RaceResult& result,
+                    const Image& reference, const RacePictures& pictures) {
+    const auto write_bitmap = [&](const std::string& name, const Bitmap& bitmap) {
+        write_file(options.folder / (name + ".png"), encode_png(bitmap));
+    };
+    const fs::path copy = options.folder / "reference.exr";
+    if (fs::weakly_canonical(copy) != fs::weakly_canonical(input.reference)) {
+        write_exr(copy, reference, input.reference_attributes);
+    }
+    write_bitmap("reference", pictures.reference);
+    write_bitmap("winner", pictures.winner.map);
+    write_bitmap("winner-around", pictures.winner_around.map);
+    for (std::size_t e = 0; e < result.runs.size(); ++e) {
+        const RaceRun& run = result.runs[e];
+        const std::string stem = file_stem(run.entrant);
+        Rendering rendering;
+        rendering.settings = run.entrant.settings;
+        rendering.report = run.reports.front();
+        ExrChannels channels = to_channels(run.image);
+        channels.values["ppm.radius"] = run.radius;
+        write_exr(options.folder / (stem + ".exr"), channels, exr_attributes(options.scene, input.scene, rendering));
+        write_bitmap(stem, pictures.entrants[e].picture);
+        write_bitmap(stem + "-difference", pictures.entrants[e].difference);
+        write_bitmap(stem + "-radius", pictures.entrants[e].radius);
+    }
+}
+
+}  // namespace
+
+void execute(const RaceOptions& options) {
+    catch_interrupts();
+    const Scene scene = load_scene(options.scene);
+    print_warnings(scene.warnings);
+    RaceInput input{scene, options.make_reference ? options.folder / "reference.exr" : find_reference(options), {}};
+    RaceSettings wanted = options.race;
+    Image reference;
+    if (!options.make_reference) {
+        input.reference_attributes = read_exr_attributes(input.reference);
+        for (Entrant& entrant : wanted.entrants) {
+            if (!entrant.settings.size) entrant.settings.size = read_exr(input.reference).extent;
+        }
+    }
+    const RaceSettings race = resolve_race(wanted, scene);
+    if (!options.make_reference) {
+        Rendering sample;
+        sample.settings = race.entrants.front().settings;
+        reference = read_reference(input.reference, *sample.settings.size);
+        print_warnings(mismatches(input, exr_attributes(options.scene, scene, sample)));
+    }
+    make_folder(options.folder);
+    Device device(options.device);
+    require_validation(options.device, device);
+    const PipelineCache cache(device, options.device.cache);
+    if (options.make_reference) reference = make_race_reference(options, input, race, device);
+
+    const RaceResult result = race_with_progress(scene, options, race, reference, device);
+    print_warnings(result.warnings);
+    const RacePictures pictures = race_pictures(result, reference, options.exposure);
+    const nlohmann::ordered_json json = race_json(options, input, result, pictures);
+    write_pictures(options, input, result, reference, pictures);
+    write_file(options.folder / "curves.csv", curves_csv(result));
+    write_file(options.folder / "race.json", json_text(json, 2) + "\n");
+    const fs::path page = options.folder / "index.html";
+    write_file(page, race_page(json, pictures));
+    if (result.interrupted) {
+        print_message("interrupted: wrote what there is to " + page.string());
+    } else if (!options.quiet) {
+        print_message("wrote " + page.string());
+    }
+    check_validation(device);
+}
+
+}  // namespace vkcppm

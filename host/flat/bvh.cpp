@@ -1,0 +1,456 @@
+#include "flat/bvh.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <utility>
+
+#include <tbb/parallel_invoke.h>
+
+namespace vkcppm {
+namespace {
+
+constexpr int bins = 16;
+constexpr std::uint32_t width = 4;  // children of a node
+// In triangle tests, the best on software Vulkan of those tried, from 1 and 0 on.
+constexpr float node_cost = 5.0f;          // of visiting a four-wide node
+constexpr float leaf_cost = 2.0f;          // of beginning a leaf
+constexpr int max_sah_depth = 48;          // deeper, halves by count bound the depth
+constexpr std::uint32_t task_size = 4096;  // triangles of a subtree that is worth a task of its own
+// Boxes grow by the rounding error of the slab test: a few ulp of coordinates within [-1, 1].
+constexpr float padding = 1e-6f;
+
+// x, y, z and 0 in one SIMD register, of g++ and clang alike.
+using Float4 = float __attribute__((vector_size(16)));
+using Int4 = int __attribute__((vector_size(16)));
+
+Float4 all(float x) { return Float4{x, x, x, x}; }
+Float4 least(Float4 a, Float4 b) { return b < a ? b : a; }
+Float4 largest(Float4 a, Float4 b) { return a < b ? b : a; }
+
+struct Bounds {
+    Float4 low;
+    Float4 high;
+
+    static Bounds nothing() {
+        const float infinity = std::numeric_limits<float>::infinity();
+        return {all(infinity), all(-infinity)};
+    }
+
+    void grow(Float4 p) {
+        low = least(low, p);
+        high = largest(high, p);
+    }
+    void grow(const Bounds& other) {
+        low = least(low, other.low);
+        high = largest(high, other.high);
+    }
+    float half_area() const {
+        const Float4 d = largest(high - low, all(0.0f));
+        return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
+    }
+};
+
+/// A triangle as the builder moves it about.
+struct Primitive {
+    Bounds bounds;
+    std::uint32_t index;
+
+    static Primitive of(const std::array<glm::vec3, 3>& triangle, std::uint32_t index) {
+        Primitive primitive{Bounds::nothing(), index};
+        for (const glm::vec3& corner : triangle) primitive.bounds.grow(Float4{corner.x, corner.y, corner.z, 0.0f});
+        return primitive;
+    }
+    Float4 centre() const { return all(0.5f) * (bounds.low + bounds.high); }
+};
+
+/// A node of the binary tree, whose leaves hold one triangle each. The surface area heuristic tells how it is best cut
+/// into four-wide nodes and leaves (Ylitie, Karras and Laine 2017, section 3).
+struct BinaryNode {
+    Bounds bounds;
+    std::uint32_t first;  // triangles of the subtree
+    std::uint32_t count;
+    std::uint32_t left;
+    std::uint32_t right;
+    /// Least cost of the subtree, in areas times triangle tests, as at most i + 1 children of a four-wide node.
+    std::array<float, width - 1> cost;
+    bool leaf;  // as one child it is best a leaf
+};
+
+/// How many of `slots` children the left half takes, at least one a half, and what both cost.
+struct Share {
+    std::uint32_t left;
+    float cost;
+
+    Share(const BinaryNode& a, const BinaryNode& b, std::uint32_t slots)
+        : left(1), cost(a.cost[0] + b.cost[slots - 2]) {
+        for (std::uint32_t k = 2; k < slots; ++k) {
+            const float other = a.cost[k - 1] + b.cost[slots - k - 1];
+            if (other < cost) {
+                left = k;
+                cost = other;
+            }
+        }
+    }
+};
+
+/// Slabs of equal thickness along each axis, in which the centres of a node lie.
+class Slabs {
+public:
+    explicit Slabs(const Bounds& centres) : low_(centres.low), extent_(centres.high - centres.low) {
+        for (int axis = 0; axis < 4; ++axis) {
+            if (!(extent_[axis] > 0.0f)) extent_[axis] = 1.0f;  // all in the first one
+        }
+    }
+    /// The slab along each axis.
+    Int4 of(Float4 centre) const {
+        const Int4 slab = __builtin_convertvector(all(float(bins)) * ((centre - low_) / extent_), Int4);
+        const Int4 last = Int4{bins, bins, bins, bins} - 1;
+        return slab < last ? slab : last;
+    }
+
+private:
+    Float4 low_;
+    Float4 extent_;
+};
+
+/// The plane in front of slab `slab` along `axis`; axis -1: none, all centres lie in one slab along every axis.
+struct Split {
+    int axis = -1;
+    int slab = 0;
+    float cost = std::numeric_limits<float>::infinity();
+};
+
+/// What lies in each slab along each axis. Slabs in which nothing lies are neither set nor looked at: most nodes have
+/// few triangles.
+class Bins {
+public:
+    Bins(const Slabs& slabs, std::span<const Primitive> primitives) {
+        for (const Primitive& primitive : primitives) {
+            const Int4 slab = slabs.of(primitive.centre());
+            for (int axis = 0; axis < 3; ++axis) {
+                Axis& along = axes_[axis];
+                const int b = slab[axis];
+                if (along.used & 1u << b) {
+                    along.bounds[b].grow(primitive.bounds);
+                    ++along.count[b];
+                } else {
+                    along.bounds[b] = primitive.bounds;
+                    along.count[b] = 1;
+                    along.used |= 1u << b;
+                }
+            }
+        }
+    }
+
+    /// The box of all.
+    Bounds whole() const {
+        Bounds sum = Bounds::nothing();
+        for (std::uint32_t rest = axes_[0].used; rest != 0; rest &= rest - 1) {
+            sum.grow(axes_[0].bounds[std::countr_zero(rest)]);
+        }
+        return sum;
+    }
+
+    /// Triangles before a slab.
+    std::uint32_t before(int axis, int slab) const {
+        std::uint32_t sum = 0;
+        for (std::uint32_t rest = axes_[axis].used & ((1u << slab) - 1); rest != 0; rest &= rest - 1) {
+            sum += axes_[axis].count[std::countr_zero(rest)];
+        }
+        return sum;
+    }
+
+    /// The plane of the least cost.
+    Split best_split() const {
+        Split best;
+        for (int axis = 0; axis < 3; ++axis) {
+            const Axis& along = axes_[axis];
+            std::array<float, bins> right_cost;
+            Bounds sum = Bounds::nothing();
+            std::uint32_t count = 0;
+            for (std::uint32_t rest = along.used; rest != 0; rest &= std::bit_floor(rest) - 1) {
+                const int b = std::bit_width(rest) - 1;
+                sum.grow(along.bounds[b]);
+                count += along.count[b];
+                right_cost[b] = float(count) * sum.half_area();
+            }
+            sum = Bounds::nothing();
+            count = 0;
+            for (std::uint32_t rest = along.used; (rest & (rest - 1)) != 0;) {
+                const int b = std::countr_zero(rest);
+                rest &= rest - 1;
+                const int next = std::countr_zero(rest);
+                sum.grow(along.bounds[b]);
+                count += along.count[b];
+                const float cost = float(count) * sum.half_area() + right_cost[next];
+                if (cost < best.cost) best = {axis, next, cost};
+            }
+        }
+        return best;
+    }
+
+private:
+    struct Axis {
+        std::uint32_t used = 0;  // a bit a slab
+        std::array<std::uint32_t, bins> count;
+        std::array<Bounds, bins> bounds;
+    };
+    std::array<Axis, 3> axes_;
+};
+
+/// Builds the binary tree, subtrees in parallel. A node's triangles lie side by side in one of two buffers and go over
+/// into the other one for its children, in the same order on either side of the plane.
+class Builder {
+public:
+    explicit Builder(std::span<const std::array<glm::vec3, 3>> triangles)
+        : order_(triangles.size()), nodes_(std::make_unique_for_overwrite<BinaryNode[]>(2 * triangles.size())) {
+        for (auto& buffer : primitives_) buffer = std::make_unique_for_overwrite<Primitive[]>(triangles.size());
+        Range all(0, std::uint32_t(triangles.size()));
+        for (std::uint32_t i = 0; i < all.last; ++i) {
+            primitives_[0][i] = Primitive::of(triangles[i], i);
+            all.centres.grow(primitives_[0][i].centre());
+        }
+        build(allocate(), all, 0);
+    }
+
+    const BinaryNode* nodes() const { return nodes_.get(); }
+    std::span<const std::uint32_t> order() const { return order_; }
+
+private:
+    /// Triangles of a node.
+    struct Range {
+        std::uint32_t first;
+        std::uint32_t last;
+        Bounds centres = Bounds::nothing();
+
+        Range(std::uint32_t first_, std::uint32_t last_) : first(first_), last(last_) {}
+        std::uint32_t count() const { return last - first; }
+    };
+
+    std::uint32_t allocate() { return next_.fetch_add(1, std::memory_order_relaxed); }
+
+    std::span<Primitive> primitives(int depth, const Range& range) {
+        return {&primitives_[depth % 2][range.first], range.count()};
+    }
+
+    void build(std::uint32_t index, const Range& range, int depth) {
+        const std::span<const Primitive> here = primitives(depth, range);
+        BinaryNode& node = nodes_[index];
+        if (range.count() == 1) {
+            const float cost = here.front().bounds.half_area() * (leaf_cost + 1.0f);
+            node = {here.front().bounds, range.first, 1, 0, 0, {cost, cost, cost}, true};
+            order_[range.first] = here.front().index;
+            return;
+        }
+        const Slabs slabs(range.centres);
+        const Bins table(slabs, here);
+        const Split split = depth < max_sah_depth ? table.best_split() : Split();
+        const auto halves = split.axis >= 0 ? partition(range, slabs, table, split, depth) : halve(range, depth);
+        node = {table.whole(), range.first, range.count(), allocate(), allocate(), {}, false};
+        const auto left = [&] { build(node.left, halves[0], depth + 1); };
+        const auto right = [&] { build(node.right, halves[1], depth + 1); };
+        if (range.count() > task_size) {
+            tbb::parallel_invoke(left, right);
+        } else {
+            left();
+            right();
+        }
+        const BinaryNode &a = nodes_[node.left], &b = nodes_[node.right];
+        const float area = node.bounds.half_area();
+        const float as_node = area * node_cost + Share(a, b, width).cost;
+        const float as_leaf = area * (leaf_cost + float(range.count()));
+        node.leaf = range.count() <= BVH_MAX_LEAF && as_leaf <= as_node;
+        node.cost[0] = node.leaf ? as_leaf : as_node;
+        for (std::uint32_t slots = 2; slots < width; ++slots) {
+            node.cost[slots - 1] = std::min(node.cost[slots - 2], Share(a, b, slots).cost);
+        }
+    }
+
+    std::array<Range, 2> partition(const Range& range, const Slabs& slabs, const Bins& table, const Split& split,
+                                   int depth) {
+        const std::uint32_t middle = range.first + table.before(split.axis, split.slab);
+        std::array<Range, 2> halves = {Range{range.first, middle}, Range{middle, range.last}};
+        std::array<std::uint32_t, 2> at = {range.first, middle};
+        for (const Primitive& primitive : primitives(depth, range)) {
+            const Float4 centre = primitive.centre();
+            const int side = slabs.of(centre)[split.axis] >= split.slab;
+            halves[side].centres.grow(centre);
+            primitives_[(depth + 1) % 2][at[side]++] = primitive;
+        }
+        return halves;
+    }
+
+    /// No plane separates the centres, or the tree is too deep: halves by count along the longest axis.
+    std::array<Range, 2> halve(const Range& range, int depth) {
+        const Float4 extent = range.centres.high - range.centres.low;
+        const int axis = extent[0] >= extent[1] && extent[0] >= extent[2] ? 0 : extent[1] >= extent[2] ? 1 : 2;
+        const std::uint32_t middle = range.first + range.count() / 2;
+        std::array<Range, 2> halves = {Range{range.first, middle}, Range{middle, range.last}};
+        std::ranges::copy(primitives(depth, range), primitives(depth + 1, range).begin());
+        const std::span<Primitive> both = primitives(depth + 1, range);
+        std::nth_element(
+            both.begin(), both.begin() + range.count() / 2, both.end(), [&](const Primitive& a, const Primitive& b) {
+                return std::pair(float(a.centre()[axis]), a.index) < std::pair(float(b.centre()[axis]), b.index);
+            });
+        for (Range& half : halves) {
+            for (const Primitive& primitive : primitives(depth + 1, half)) half.centres.grow(primitive.centre());
+        }
+        return halves;
+    }
+
+    std::array<std::unique_ptr<Primitive[]>, 2> primitives_;
+    std::vector<std::uint32_t> order_;
+    std::unique_ptr<BinaryNode[]> nodes_;
+    std::atomic<std::uint32_t> next_ = 0;
+};
+
+/// Largest q with origin + q * cell <= value, and smallest with >=, in the kernels' own float arithmetic.
+std::uint32_t quantise_down(float value, float origin, float cell) {
+    auto q = std::int32_t(std::clamp(std::floor((value - origin) / cell), 0.0f, 255.0f));
+    while (q > 0 && origin + float(q) * cell > value) --q;
+    return std::uint32_t(q);
+}
+std::uint32_t quantise_up(float value, float origin, float cell) {
+    auto q = std::int32_t(std::clamp(std::ceil((value - origin) / cell), 0.0f, 255.0f));
+    while (q < 255 && origin + float(q) * cell < value) ++q;
+    return std::uint32_t(q);
+}
+
+/// Writes the four-wide nodes: depth-first, but the nodes among a node's children side by side. The triangles of leaves
+/// come in the order of their nodes.
+class Collapser {
+public:
+    Collapser(const BinaryNode* binary, std::span<const std::uint32_t> binary_order)
+        : nodes(1), binary_(binary), binary_order_(binary_order) {
+        order.reserve(binary_order.size());
+        stack = emit(0, 0);
+    }
+
+    std::vector<gpu::BvhNode> nodes;
+    std::vector<std::uint32_t> order;
+    std::uint32_t stack;  // nodes of which children can wait
+
+private:
+    /// Fills in node `index` from the binary node and adds all below; returns the nodes of which children can wait.
+    std::uint32_t emit(std::uint32_t root, std::uint32_t index) {
+        Children children;
+        if (binary_[root].leaf) {
+            children.add(root);
+        } else {
+            cut_halves(root, width, children);
+        }
+        const auto list = children.list();
+        const auto leaves = std::ranges::stable_partition(list, [&](std::uint32_t c) { return !binary_[c].leaf; });
+        const std::size_t inner = list.size() - leaves.size();
+        const auto first = inner > 0 ? std::uint32_t(nodes.size()) : index;
+        nodes.resize(nodes.size() + inner);
+        quantise(index, list);
+        nodes[index].exponents |= ((1u << list.size()) - 1) << 24;
+        nodes[index].children = first << BVH_CHILDREN_SHIFT | std::uint32_t(inner);
+        std::uint32_t* words = inner > 0 ? nodes[first].parent_leaves : nodes[index].leaves;
+        words[0] = std::uint32_t(order.size());
+        for (std::size_t c = inner; c < list.size(); ++c) {
+            const BinaryNode& leaf = binary_[list[c]];
+            words[1] |= ((std::uint32_t(order.size()) - words[0]) | leaf.count << 4) << (8 * c);
+            std::ranges::copy(binary_order_.subspan(leaf.first, leaf.count), std::back_inserter(order));
+        }
+        std::uint32_t need = 0;
+        for (std::uint32_t c = 0; c < inner; ++c) need = std::max(need, emit(list[c], first + c));
+        return need + (list.size() > 1 ? 1 : 0);
+    }
+
+    struct Children {
+        std::array<std::uint32_t, width> node;
+        int count = 0;
+
+        void add(std::uint32_t n) { node[count++] = n; }
+        std::span<std::uint32_t> list() { return {node.data(), std::size_t(count)}; }
+    };
+
+    /// Adds what the subtree of `n` becomes in at most so many slots of its parent.
+    void cut(std::uint32_t n, std::uint32_t slots, Children& children) const {
+        const auto& cost = binary_[n].cost;
+        while (slots > 1 && cost[slots - 1] == cost[slots - 2]) --slots;  // fewer do as well
+        if (slots == 1) {
+            children.add(n);
+        } else {
+            cut_halves(n, slots, children);
+        }
+    }
+
+    void cut_halves(std::uint32_t n, std::uint32_t slots, Children& children) const {
+        const BinaryNode& node = binary_[n];
+        const Share share(binary_[node.left], binary_[node.right], slots);
+        cut(node.left, share.left, children);
+        cut(node.right, slots - share.left, children);
+    }
+
+    void quantise(std::uint32_t index, std::span<const std::uint32_t> children) {
+        gpu::BvhNode& node = nodes[index];
+        Bounds whole = Bounds::nothing();
+        for (const std::uint32_t c : children) whole.grow(binary_[c].bounds);
+        node.origin = glm::vec3(whole.low[0], whole.low[1], whole.low[2]) - padding;
+        const glm::vec3 high = glm::vec3(whole.high[0], whole.high[1], whole.high[2]) + padding;
+        std::array<std::uint32_t*, 3> low_words = {&node.low_x, &node.low_y, &node.low_z};
+        std::array<std::uint32_t*, 3> high_words = {&node.high_x, &node.high_y, &node.high_z};
+        for (int axis = 0; axis < 3; ++axis) {
+            int exponent = std::max(-100, std::ilogb((high[axis] - node.origin[axis]) / 255.0f));
+            while (node.origin[axis] + 255.0f * std::ldexp(1.0f, exponent) < high[axis]) ++exponent;
+            const float cell = std::ldexp(1.0f, exponent);
+            node.exponents |= std::uint32_t(exponent + 127) << (8 * axis);
+            for (std::size_t c = 0; c < children.size(); ++c) {
+                const Bounds& bounds = binary_[children[c]].bounds;
+                *low_words[axis] |= quantise_down(bounds.low[axis] - padding, node.origin[axis], cell) << (8 * c);
+                *high_words[axis] |= quantise_up(bounds.high[axis] + padding, node.origin[axis], cell) << (8 * c);
+            }
+        }
+    }
+
+    const BinaryNode* binary_;
+    std::span<const std::uint32_t> binary_order_;
+};
+
+}  // namespace
+
+Bvh build_bvh(std::span<const std::array<glm::vec3, 3>> triangles) {
+    assert(triangles.size() < (std::size_t(1) << 28));
+    Bvh bvh;
+    if (triangles.empty()) {
+        bvh.nodes.emplace_back();
+        return bvh;
+    }
+    const Builder builder(triangles);
+    Collapser collapser(builder.nodes(), builder.order());
+    return {std::move(collapser.nodes), std::move(collapser.order), std::max(1u, collapser.stack)};
+}
+
+Child child_of(const Bvh& bvh, std::uint32_t index, int c) {
+    const gpu::BvhNode& node = bvh.nodes[index];
+    if ((node.exponents >> (24 + c) & 1u) == 0) return {};
+    const std::uint32_t inner = node.children & BVH_CHILDREN_MASK, first = node.children >> BVH_CHILDREN_SHIFT;
+    if (std::uint32_t(c) < inner) return {.node = first + std::uint32_t(c)};
+    const std::uint32_t* leaves = inner == 0 ? bvh.nodes[first].leaves : bvh.nodes[first].parent_leaves;
+    const std::uint32_t place = leaves[1] >> (8 * c);
+    return {.first = leaves[0] + (place & 15u), .count = place >> 4 & 15u};
+}
+
+Box child_box(const gpu::BvhNode& node, int c) {
+    const std::array<std::uint32_t, 3> low = {node.low_x, node.low_y, node.low_z};
+    const std::array<std::uint32_t, 3> high = {node.high_x, node.high_y, node.high_z};
+    Box box;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float cell = std::bit_cast<float>((node.exponents >> (8 * axis) & 255u) << 23);
+        box.low[axis] = node.origin[axis] + float(low[axis] >> (8 * c) & 255u) * cell;
+        box.high[axis] = node.origin[axis] + float(high[axis] >> (8 * c) & 255u) * cell;
+    }
+    return box;
+}
+
+}  // namespace vkcppm

@@ -1,0 +1,24 @@
+#pragma once
+// What a scene asks of the kernels: pipelines are specialised to exactly this set.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "flat/feature.h"
+#include "flat/flatten.h"
+#include "flat/surface.h"
+#include "scene/scene.h"
+
+namespace vkcppm {
+
+/// The features of a scene, in the order of their bits. traits: of its materials. `flat` must be whole but for its
+/// features.
+std::vector<Feature> features_of(const Scene& scene, const std::vector<SurfaceTraits>& traits, const FlatScene& flat);
+
+std::uint32_t bits_of(const std::vector<Feature>& features);
+
+/// The rule by which an eye path gathers photons on a surface or goes on from it: for `vkcppm info`.
+std::string gathering_rule();
+
+}  // namespace vkcppm

@@ -1,0 +1,87 @@
+#include "scene/gltf/cameras.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <tiny_gltf.h>
+
+#include "scene/bad_scene.h"
+#include "scene/gltf/values.h"
+
+namespace vkcppm {
+
+namespace {
+
+/// A frame of orthonormal columns x, y, z whose z is along `z` and whose y is as near to `up` as that allows; nothing
+/// where the two are zero or parallel.
+std::optional<glm::dmat3> orthonormal_frame(const glm::dvec3& z, const glm::dvec3& up) {
+    const glm::dvec3 unit_z = unit_or_zero(z);
+    const glm::dvec3 unit_up = unit_or_zero(up);
+    const glm::dvec3 x = glm::cross(unit_up, unit_z);
+    const double sine = glm::length(x);
+    if (!(sine > 1e-9)) return std::nullopt;
+    return glm::dmat3(x / sine, glm::cross(unit_z, x / sine), unit_z);
+}
+
+}  // namespace
+
+std::optional<Camera> read_camera(const GltfFile& file, const tinygltf::Model& model, const PlacedNode& placed,
+                                  Warnings& warnings) {
+    const auto& [index, to_world] = placed;
+    const tinygltf::Node& node = model.nodes[index];
+    if (node.camera < 0) return std::nullopt;
+    const tinygltf::Camera& source = model.cameras[node.camera];
+    const std::string object = fmt::format("cameras[{}]", node.camera);
+    if (source.type != "perspective") {
+        warnings.add("orthographic cameras are skipped", object);
+        return std::nullopt;
+    }
+    const double yfov = source.perspective.yfov;
+    if (!(yfov > 0.0 && yfov < std::numbers::pi)) {
+        bad_scene(file.name, object + ".perspective.yfov", fmt::to_string(yfov), "it must lie between 0 and pi");
+    }
+    const std::optional<glm::dmat3> frame = orthonormal_frame(glm::dvec3(to_world[2]), glm::dvec3(to_world[1]));
+    if (!frame) {
+        warnings.add("its camera is skipped, the transform is singular", fmt::format("nodes[{}]", index));
+        return std::nullopt;
+    }
+    Camera camera;
+    camera.name = source.name.empty() ? node.name : source.name;
+    camera.to_world = glm::dmat4(*frame);
+    camera.to_world[3] = to_world[3];
+    camera.yfov = yfov;
+    if (file.document["cameras"][node.camera]["perspective"].contains("aspectRatio")) {
+        camera.aspect = source.perspective.aspectRatio;
+        if (!(*camera.aspect > 0.0)) {
+            bad_scene(file.name, object + ".perspective.aspectRatio", fmt::to_string(*camera.aspect),
+                      "it must be positive");
+        }
+    }
+    return camera;
+}
+
+Camera framing_camera(const Scene& scene) {
+    glm::dvec3 low(0.0), high(0.0);
+    bool first = true;
+    for (const Triangle& triangle : scene.triangles) {
+        for (const std::uint32_t vertex : triangle.vertex) {
+            low = first ? scene.positions[vertex] : glm::min(low, scene.positions[vertex]);
+            high = first ? scene.positions[vertex] : glm::max(high, scene.positions[vertex]);
+            first = false;
+        }
+    }
+    const glm::dvec3 centre = 0.5 * low + 0.5 * high;
+    const double radius = first ? 1.0 : 0.5 * glm::length(high - low);
+    constexpr double margin = 1.05;
+    const glm::dvec3 towards_camera = glm::normalize(glm::dvec3(0.0, 0.35, 1.0));
+    Camera camera;
+    camera.name = "framing";
+    camera.to_world = glm::dmat4(*orthonormal_frame(towards_camera, glm::dvec3(0.0, 1.0, 0.0)));
+    const double distance = margin * radius / std::sin(0.5 * camera.yfov);
+    camera.to_world[3] = glm::dvec4(centre + distance * towards_camera, 1.0);
+    return camera;
+}
+
+}  // namespace vkcppm

@@ -1,0 +1,107 @@
+#include "scene/gltf/gltf.h"
+
+#include <algorithm>
+#include <new>
+
+#include <tiny_gltf.h>
+
+#include "scene/bad_scene.h"
+#include "scene/gltf/accessors.h"
+#include "scene/gltf/cameras.h"
+#include "scene/gltf/file.h"
+#include "scene/gltf/images.h"
+#include "scene/gltf/lights.h"
+#include "scene/gltf/materials.h"
+#include "scene/gltf/meshes.h"
+#include "scene/gltf/nodes.h"
+#include "scene/gltf/schema.h"
+#include "scene/gltf/views.h"
+#include "scene/warnings.h"
+
+namespace vkcppm {
+
+namespace {
+
+using nlohmann::json;
+
+/// The document as tinygltf's structures. Only what the loader reads is handed over: the buffers are read already,
+/// materials are read from the JSON, and images, animations and the like can't trip the parser.
+tinygltf::Model parse_model(const GltfFile& file) {
+    json document;
+    for (const char* member :
+         {"asset", "scene", "scenes", "nodes", "meshes", "accessors", "bufferViews", "cameras", "extensions"}) {
+        if (const auto found = file.document.find(member); found != file.document.end()) document[member] = *found;
+    }
+    // tinygltf 2.7 refuses indices without a bufferView, which glTF allows: they get one past the last of the file.
+    const std::size_t no_view = document["bufferViews"].size();
+    document["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 1}});
+    for (json& accessor : document["accessors"]) accessor.emplace("bufferView", no_view);
+    const std::string text = document.dump();
+    if (text.size() > INT32_MAX) {
+        bad_scene(file.name, "the size of the JSON", fmt::to_string(text.size()),
+                  fmt::format("the limit is {} bytes", INT32_MAX));
+    }
+    tinygltf::Model model;
+    std::string error, warning;
+    if (!tinygltf::TinyGLTF().LoadASCIIFromString(&model, &error, &warning, text.data(), unsigned(text.size()), "",
+                                                  tinygltf::NO_REQUIRE)) {
+        std::ranges::replace(error, '\n', ' ');
+        bad_scene(file.name, "the document", "refused by tinygltf", error);
+    }
+    return model;
+}
+
+void warn_of_ignored_parts(const GltfFile& file, Warnings& warnings) {
+    const auto unsupported = unsupported_extensions(file.document, "extensionsUsed", file.name);
+    if (!unsupported.empty()) {
+        warnings.add("ignored, this program lacks them", fmt::format("extensions {}", fmt::join(unsupported, ", ")));
+    }
+    if (!file.document.value("animations", json::array()).empty()) {
+        warnings.add("ignored, the scene is at rest", "animations");
+    }
+}
+
+Scene read_scene(const GltfFile& file, const tinygltf::Model& model) {
+    Scene scene;
+    Warnings warnings;
+    warn_of_ignored_parts(file, warnings);
+    GltfViews views(file);
+    GltfAccessors accessors(file, model, views);
+    GltfImages images(file, views, warnings);
+    const std::vector<PlacedNode> nodes = place_nodes(file, model, warnings);
+    scene.materials = read_materials(file, used_materials(file, model, nodes), images, warnings);
+    scene.images = images.take_images();
+    scene.hash = images.hash();
+    add_meshes(file, model, accessors, nodes, scene, warnings);
+    for (const PlacedNode& node : nodes) {
+        if (auto camera = read_camera(file, model, node, warnings)) scene.cameras.push_back(std::move(*camera));
+        if (auto light = read_light(file, model, node, warnings)) scene.lights.push_back(std::move(*light));
+    }
+    if (scene.cameras.empty()) {
+        warnings.add("there is no perspective camera, one that frames it is used", "the scene");
+        scene.cameras.push_back(framing_camera(scene));
+    }
+    if (scene.triangles.empty()) warnings.add("there is no triangle", "the scene");
+    scene.warnings = warnings.lines(file.name);
+    return scene;
+}
+
+}  // namespace
+
+Scene load_gltf(const std::filesystem::path& path) {
+    try {
+        const GltfFile file = read_gltf_file(path);
+        const tinygltf::Model model = parse_model(file);
+        Scene scene = read_scene(file, model);
+        scene.file = path;
+        return scene;
+    } catch (const Error&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        bad_scene(path.string(), "its size", "too large", "the memory is exhausted");
+    } catch (const std::exception& error) {  // what a library throws on input it does not expect
+        bad_scene(path.string(), "the file", "refused", error.what());
+    }
+}
+
+}  // namespace vkcppm

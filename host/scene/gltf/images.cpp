@@ -1,0 +1,75 @@
+#include "scene/gltf/images.h"
+
+#include <stdexcept>
+
+#include "scene/bad_scene.h"
+#include "scene/gltf/limits.h"
+#include "scene/gltf/schema.h"
+#include "scene/gltf/picture.h"
+#include "scene/gltf/resource.h"
+#include "scene/gltf/uri.h"
+
+namespace vkcppm {
+
+using nlohmann::json;
+
+GltfImages::GltfImages(const GltfFile& file, GltfViews& views, Warnings& warnings)
+    : file_(file), views_(views), warnings_(warnings), hash_(file.hash) {}
+
+std::optional<std::uint32_t> GltfImages::index(std::size_t image) {
+    const json& source = file_.document["images"][image];
+    const std::string object = fmt::format("images[{}]", image);
+    const std::string uri = source.value("uri", ""), name = source.value("name", "");
+    const bool has_view = source.contains("bufferView");
+    if (has_view == source.contains("uri")) {
+        bad_scene(file_.name, object, json_text(source), "it must have either a uri or a bufferView");
+    }
+    const auto [found, is_new] = by_source_.try_emplace(has_view ? source["bufferView"].dump() : "uri " + uri);
+    if (!is_new) return found->second;
+
+    if (has_view) {
+        found->second = decode(views_.bytes(source["bufferView"].get<std::size_t>()), name, object);
+    } else {
+        std::string why;
+        const std::optional<Bytes> bytes = read_uri(uri, max_gltf_bytes, object + ".uri", file_.name, hash_, why);
+        if (!bytes) {
+            warnings_.add("its textures are ignored, the image is absent", fmt::format("{} ({})", object, why));
+        } else if (is_data_uri(uri)) {
+            found->second = decode(*bytes, name, object);
+        } else {
+            found->second = decode(*bytes, name.empty() ? uri : name, fmt::format("{} ({})", object, json_text(uri)));
+        }
+    }
+    return found->second;
+}
+
+/// The place of the picture in `bytes` among those decoded; none, with a warning, where its format is foreign.
+std::optional<std::uint32_t> GltfImages::decode(std::span<const std::uint8_t> bytes, const std::string& name,
+                                                const std::string& object) {
+    if (const std::string_view format = foreign_format(bytes); !format.empty()) {
+        warnings_.add(fmt::format("its textures are ignored, this program lacks {}", format), object);
+        return std::nullopt;
+    }
+    try {
+        const Extent size = picture_size(bytes);
+        if (size.width > max_image_side || size.height > max_image_side) {
+            bad_scene(file_.name, "the size of " + object, fmt::format("{} x {}", size.width, size.height),
+                      fmt::format("the limit is {} texels a side", max_image_side));
+        }
+        // Before there is memory for them: a header claims any size.
+        if (size.pixels() > max_texels_per_byte * bytes.size()) {
+            bad_scene(
+                file_.name, "the size of " + object, fmt::format("{} x {}", size.width, size.height),
+                fmt::format("its {} bytes hold {} texels at most", bytes.size(), max_texels_per_byte * bytes.size()));
+        }
+        check_total(texels_ += size.pixels(), max_texels, "texels, with those of " + object, file_.name);
+        images_.push_back({name, size, decode_picture(bytes)});
+        return std::uint32_t(images_.size() - 1);
+    } catch (const Error&) {
+        throw;
+    } catch (const std::runtime_error& error) {
+        bad_scene(file_.name, object, "unreadable", error.what());
+    }
+}
+
+}  // namespace vkcppm

@@ -1,0 +1,65 @@
+#include "scene/gltf/lights.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <tiny_gltf.h>
+
+#include "scene/bad_scene.h"
+#include "scene/gltf/values.h"
+
+namespace vkcppm {
+
+namespace {
+
+/// KHR_lights_punctual: 0 <= inner < outer <= pi/2.
+void read_cone(const tinygltf::SpotLight& spot, const std::string& object, PunctualLight& light,
+               const std::string& file, Warnings& warnings) {
+    constexpr double right_angle = std::numbers::pi / 2.0;
+    constexpr double rounding = 1e-6;            // pi/2 written as float lies above pi/2
+    constexpr double widest_inner = 1.0 - 1e-3;  // of outer: a hard edge that is still a falloff
+    if (!(spot.outerConeAngle > 0.0)) {
+        bad_scene(file, object + ".spot.outerConeAngle", fmt::to_string(spot.outerConeAngle),
+                  "it must lie above 0, to pi/2");
+    }
+    const double outer =
+        clamped(spot.outerConeAngle, 0.0, right_angle + rounding, object + ".spot.outerConeAngle", warnings);
+    light.outer_cone = std::min(outer, right_angle);
+    light.inner_cone =
+        clamped(spot.innerConeAngle, 0.0, widest_inner * light.outer_cone, object + ".spot.innerConeAngle", warnings);
+}
+
+}  // namespace
+
+std::optional<PunctualLight> read_light(const GltfFile& file, const tinygltf::Model& model, const PlacedNode& placed,
+                                        Warnings& warnings) {
+    const auto& [index, to_world] = placed;
+    const tinygltf::Node& node = model.nodes[index];
+    const auto extension = node.extensions.find("KHR_lights_punctual");
+    if (extension == node.extensions.end()) return std::nullopt;
+    const int light_index = extension->second.Get("light").GetNumberAsInt();
+    const tinygltf::Light& source = model.lights[light_index];
+    const std::string object = fmt::format("lights[{}]", light_index);
+    PunctualLight light;
+    light.kind = source.type == "point"  ? PunctualLight::Kind::point
+                 : source.type == "spot" ? PunctualLight::Kind::spot
+                                         : PunctualLight::Kind::directional;
+    light.name = source.name.empty() ? node.name : source.name;
+    const glm::dvec3 color = source.color.empty() ? glm::dvec3(1.0) : glm::make_vec3(source.color.data());
+    light.intensity = emitted(color, source.intensity, object + ".color", object + ".intensity", file.name, warnings);
+    light.position = glm::dvec3(to_world[3]);
+    if (light.kind != PunctualLight::Kind::point) {
+        light.direction = unit_or_zero(-glm::dvec3(to_world[2]));
+        if (light.direction == glm::dvec3(0.0)) {
+            warnings.add("its light is skipped, the transform is singular", fmt::format("nodes[{}]", index));
+            return std::nullopt;
+        }
+    }
+    if (light.kind == PunctualLight::Kind::spot) read_cone(source.spot, object, light, file.name, warnings);
+    if (source.range != 0.0) warnings.add("ignored, light falls off without end", object + ".range");
+    return light;
+}
+
+}  // namespace vkcppm

@@ -1,0 +1,239 @@
+#include "scene/gltf/materials.h"
+
+#include <cfloat>
+#include <cmath>
+
+#include <glm/gtc/type_ptr.hpp>
+
+#include "scene/gltf/limits.h"
+#include "scene/gltf/values.h"
+
+namespace vkcppm {
+
+namespace {
+
+using nlohmann::json;
+using Double3 = std::array<double, 3>;
+using Double4 = std::array<double, 4>;
+
+/// A member that is an object, or an empty one.
+const json& object_or_empty(const json& parent, const char* name) {
+    static const json empty = json::object();
+    const auto found = parent.find(name);
+    return found == parent.end() ? empty : *found;
+}
+
+glm::dvec3 vec3_or(const json& parent, const char* name, double otherwise) {
+    return glm::make_vec3(parent.value(name, Double3{otherwise, otherwise, otherwise}).data());
+}
+
+Texture::Wrap wrap_of(const json& sampler, const char* member) {
+    switch (sampler.value(member, 10497)) {
+        case 33071: return Texture::Wrap::clamp_to_edge;
+        case 33648: return Texture::Wrap::mirrored_repeat;
+        default: return Texture::Wrap::repeat;
+    }
+}
+
+/// There are no mipmaps: the magnification filter decides, and the minification filter where it is not stated.
+bool is_nearest(const json& sampler) {
+    constexpr int nearest = 9728, linear = 9729, nearest_mipmap_nearest = 9984, nearest_mipmap_linear = 9986;
+    if (sampler.contains("magFilter")) return sampler["magFilter"] == nearest;
+    const int minification = sampler.value("minFilter", linear);
+    return minification == nearest || minification == nearest_mipmap_nearest || minification == nearest_mipmap_linear;
+}
+
+class MaterialReader {
+public:
+    MaterialReader(const GltfFile& file, std::size_t index, GltfImages& images, Warnings& warnings)
+        : file_(file),
+          source_(file.document["materials"][index]),
+          name_(fmt::format("materials[{}]", index)),
+          images_(images),
+          warnings_(warnings) {}
+
+    Material factors() const {
+        const json& pbr = object_or_empty(source_, "pbrMetallicRoughness");
+        const json& volume = extension("KHR_materials_volume");
+        const json& specular = extension("KHR_materials_specular");
+        const json& clearcoat = extension("KHR_materials_clearcoat");
+        const auto base_color = pbr.value("baseColorFactor", Double4{1.0, 1.0, 1.0, 1.0});
+
+        Material material;
+        material.name = source_.value("name", "");
+        material.base_color = color(glm::make_vec3(base_color.data()), 1.0, "baseColorFactor");
+        material.opacity = number(base_color[3], 0.0, 1.0, "baseColorFactor");
+        const std::string alpha = source_.value("alphaMode", "OPAQUE");
+        material.alpha = alpha == "MASK"    ? Material::Alpha::mask
+                         : alpha == "BLEND" ? Material::Alpha::blend
+                                            : Material::Alpha::opaque;
+        material.alpha_cutoff = factor(source_, "alphaCutoff", 0.5, 0.0, FLT_MAX);
+        material.double_sided = source_.value("doubleSided", false);
+        material.unlit = object_or_empty(source_, "extensions").contains("KHR_materials_unlit");
+        if (material.unlit) return material;  // nothing but the base colour means anything there
+
+        material.metallic = factor(pbr, "metallicFactor", 1.0, 0.0, 1.0);
+        material.roughness = factor(pbr, "roughnessFactor", 1.0, 0.0, 1.0);
+        const double strength = extension("KHR_materials_emissive_strength").value("emissiveStrength", 1.0);
+        material.emission = emitted(vec3_or(source_, "emissiveFactor", 0.0), strength, member("emissiveFactor"),
+                                    member("emissiveStrength"), file_.name, warnings_);
+        material.transmission = factor(extension("KHR_materials_transmission"), "transmissionFactor", 0.0, 0.0, 1.0);
+        material.thickness = factor(volume, "thicknessFactor", 0.0, 0.0, FLT_MAX);
+        material.attenuation_color = color(vec3_or(volume, "attenuationColor", 1.0), 1.0, "attenuationColor");
+        if (volume.contains("attenuationDistance")) {
+            material.attenuation_distance = factor(volume, "attenuationDistance", 0.0, FLT_MIN, FLT_MAX);
+        }
+        const double ior = extension("KHR_materials_ior").value("ior", 1.5);
+        material.ior = ior == 0.0 ? 0.0f : number(ior, 1.0, FLT_MAX, "ior");  // 0 stands for infinity
+        material.dispersion = factor(extension("KHR_materials_dispersion"), "dispersion", 0.0, 0.0, FLT_MAX);
+        material.specular = factor(specular, "specularFactor", 1.0, 0.0, 1.0);
+        material.specular_color = color(vec3_or(specular, "specularColorFactor", 1.0), FLT_MAX, "specularColorFactor");
+        material.clearcoat = factor(clearcoat, "clearcoatFactor", 0.0, 0.0, 1.0);
+        material.clearcoat_roughness = factor(clearcoat, "clearcoatRoughnessFactor", 0.0, 0.0, 1.0);
+        return material;
+    }
+
+    /// The textures of a material with these factors. Not read: occlusion, which paths find out for themselves, and
+    /// thickness, since a volume is as thick as its mesh.
+    void add_textures(Material& material) {
+        const json& pbr = object_or_empty(source_, "pbrMetallicRoughness");
+        material.base_color_texture = texture(pbr, "baseColorTexture");
+        if (material.unlit) return;
+
+        const json& specular = extension("KHR_materials_specular");
+        const json& clearcoat = extension("KHR_materials_clearcoat");
+        const glm::vec3 none(0.0f);
+        if (material.metallic > 0.0f || material.roughness > 0.0f) {
+            material.metallic_roughness_texture = texture(pbr, "metallicRoughnessTexture");
+        }
+        material.normal_texture = normal_texture(source_, "normalTexture", material.normal_scale);
+        if (material.emission != none) material.emissive_texture = texture(source_, "emissiveTexture");
+        if (material.transmission > 0.0f) {
+            material.transmission_texture = texture(extension("KHR_materials_transmission"), "transmissionTexture");
+        }
+        if (material.specular > 0.0f) {
+            material.specular_texture = texture(specular, "specularTexture");
+            if (material.specular_color != none) {
+                material.specular_color_texture = texture(specular, "specularColorTexture");
+            }
+        }
+        if (material.clearcoat > 0.0f) {
+            material.clearcoat_texture = texture(clearcoat, "clearcoatTexture");
+            material.clearcoat_normal_texture =
+                normal_texture(clearcoat, "clearcoatNormalTexture", material.clearcoat_normal_scale);
+            if (material.clearcoat_roughness > 0.0f) {
+                material.clearcoat_roughness_texture = texture(clearcoat, "clearcoatRoughnessTexture");
+            }
+        }
+    }
+
+private:
+    std::string member(const char* name) const { return fmt::format("{}.{}", name_, name); }
+
+    const json& extension(const char* name) const {
+        return object_or_empty(object_or_empty(source_, "extensions"), name);
+    }
+
+    float number(double value, double low, double high, const char* name) const {
+        return float(clamped(value, low, high, member(name), warnings_));
+    }
+
+    float factor(const json& parent, const char* name, double otherwise, double low, double high) const {
+        return number(parent.value(name, otherwise), low, high, name);
+    }
+
+    glm::vec3 color(const glm::dvec3& value, double high, const char* name) const {
+        return clamped(value, 0.0, high, member(name), warnings_);
+    }
+
+    /// A texture of `parent` by its member's name; none where it has none, or, with a warning, no image for it.
+    std::optional<Texture> texture(const json& parent, const char* name) {
+        const auto found = parent.find(name);
+        if (found == parent.end()) return std::nullopt;
+        const json& info = *found;
+        const json& transform = object_or_empty(object_or_empty(info, "extensions"), "KHR_texture_transform");
+        const int uv_set = transform.value("texCoord", info.value("texCoord", 0));
+        if (uv_set > 1) {
+            warnings_.add("the texture is ignored, this program reads TEXCOORD_0 and TEXCOORD_1",
+                          fmt::format("{}.texCoord = {}", member(name), uv_set));
+            return std::nullopt;
+        }
+        const auto index = info["index"].get<std::size_t>();
+        const json& source = file_.document["textures"][index];
+        if (!source.contains("source")) {
+            warnings_.add("the texture is ignored, it has no PNG or JPEG as its source",
+                          fmt::format("textures[{}] ({})", index, member(name)));
+            return std::nullopt;
+        }
+        const std::optional<std::uint32_t> image = images_.index(source["source"].get<std::size_t>());
+        if (!image) return std::nullopt;
+
+        Texture texture;
+        texture.image = *image;
+        texture.uv_set = std::uint32_t(uv_set);
+        if (source.contains("sampler")) {
+            const json& sampler = file_.document["samplers"][source["sampler"].get<std::size_t>()];
+            texture.wrap_s = wrap_of(sampler, "wrapS");
+            texture.wrap_t = wrap_of(sampler, "wrapT");
+            texture.nearest = is_nearest(sampler);
+        }
+        set_transform(texture, transform, member(name));
+        return texture;
+    }
+
+    /// KHR_texture_transform: scaled, then turned, then moved. A positive angle turns the coordinates counter-clockwise
+    /// as seen with v downwards, (1, 0) towards (0, -1): the extension's own example takes the lower left quarter.
+    void set_transform(Texture& texture, const json& transform, const std::string& object) const {
+        const auto offset = transform.value("offset", std::array<double, 2>{0.0, 0.0});
+        const auto scale = transform.value("scale", std::array<double, 2>{1.0, 1.0});
+        for (const double value : {offset[0], offset[1], scale[0], scale[1]}) {
+            if (std::abs(value) <= max_uv) continue;
+            bad_scene(file_.name, object + ".extensions.KHR_texture_transform", fmt::to_string(value),
+                      fmt::format("the limit of offset and scale is {}", max_uv));
+        }
+        const double angle = transform.value("rotation", 0.0);
+        const double c = std::cos(angle), s = std::sin(angle);
+        texture.matrix = glm::mat2(c * scale[0], -s * scale[0], s * scale[1], c * scale[1]);  // columns
+        texture.offset = {float(offset[0]), float(offset[1])};
+    }
+
+    std::optional<Texture> normal_texture(const json& parent, const char* name, float& scale) {
+        std::optional<Texture> normals = texture(parent, name);
+        if (normals) scale = factor(parent[name], "scale", 1.0, -max_uv, max_uv);
+        return normals;
+    }
+
+    const GltfFile& file_;
+    const json& source_;
+    const std::string name_;
+    GltfImages& images_;
+    Warnings& warnings_;
+};
+
+}  // namespace
+
+std::vector<Material> read_materials(const GltfFile& file, const std::vector<bool>& is_used, GltfImages& images,
+                                     Warnings& warnings) {
+    std::vector<Material> materials;
+    for (std::size_t i = 0; i < is_used.size(); ++i) {
+        MaterialReader reader(file, i, images, warnings);
+        materials.push_back(reader.factors());
+        if (is_used[i]) reader.add_textures(materials.back());
+    }
+    return materials;
+}
+
+VertexNeeds vertex_needs(const Material& material) {
+    VertexNeeds needs;
+    for (const std::optional<Texture>* texture :
+         {&material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture,
+          &material.emissive_texture, &material.transmission_texture, &material.specular_texture,
+          &material.specular_color_texture, &material.clearcoat_texture, &material.clearcoat_roughness_texture,
+          &material.clearcoat_normal_texture}) {
+        if (*texture) needs.uv[(*texture)->uv_set] = true;
+    }
+    needs.tangents = material.normal_texture || material.clearcoat_normal_texture;
+    return needs;
+}
+
+}  // namespace vkcppm

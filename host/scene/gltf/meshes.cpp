@@ -1,0 +1,277 @@
+#include "scene/gltf/meshes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <glm/geometric.hpp>
+#include <tiny_gltf.h>
+
+#include "scene/bad_scene.h"
+#include "scene/gltf/limits.h"
+#include "scene/gltf/materials.h"
+#include "scene/gltf/placement.h"
+#include "scene/gltf/primitives.h"
+#include "scene/gltf/values.h"
+
+namespace vkcppm {
+
+namespace {
+
+/// A vertex in the world. What it does not have takes no room where no other has it either.
+struct Vertex {
+    glm::dvec3 position;
+    glm::vec3 normal;
+    std::array<std::optional<glm::vec2>, 2> uv;
+    std::optional<glm::vec4> color;
+    std::optional<glm::vec4> tangent;
+};
+
+const glm::vec2 no_uv(0.0f);
+const glm::vec4 white(1.0f);
+const glm::vec4 no_tangent(0.0f);
+
+/// Sets values[i], the next of a vector that is empty until the first value is there.
+template <typename T> void append(std::vector<T>& values, std::size_t i, const std::optional<T>& value, const T& none) {
+    if (values.empty() && !value) return;
+    values.resize(i, none);
+    values.push_back(value.value_or(none));
+}
+
+template <typename T> std::optional<T> element(const std::vector<T>& values, std::size_t i) {
+    return i < values.size() ? std::optional(values[i]) : std::nullopt;
+}
+
+class MeshAdder {
+public:
+    MeshAdder(const GltfFile& file, const tinygltf::Model& model, GltfAccessors& accessors, Scene& scene,
+              Warnings& warnings)
+        : file_(file),
+          model_(model),
+          accessors_(accessors),
+          primitives_(file, model, accessors, warnings),
+          scene_(scene),
+          warnings_(warnings),
+          file_materials_(scene.materials.size()) {}
+
+    void add(const std::vector<PlacedNode>& nodes) {
+        check_totals(nodes);
+        for (const PlacedNode& node : nodes) {
+            if (model_.nodes[node.index].mesh >= 0) add_node(node);
+        }
+        if (degenerate_triangles_ > 0) {
+            warnings_.add(fmt::format("{} dropped", degenerate_triangles_), "triangles of zero area");
+        }
+        const std::size_t vertices = scene_.positions.size();
+        for (std::vector<glm::vec2>& uv : scene_.uv) {
+            if (!uv.empty()) uv.resize(vertices, no_uv);
+        }
+        if (!scene_.colors.empty()) scene_.colors.resize(vertices, white);
+        if (!scene_.tangents.empty()) scene_.tangents.resize(vertices, no_tangent);
+    }
+
+private:
+    /// Limits what the meshes of all nodes add up to, before any is read: a small file can name one mesh very often.
+    void check_totals(const std::vector<PlacedNode>& nodes) const {
+        std::vector<std::size_t> triangles(model_.meshes.size());
+        for (std::size_t i = 0; i < triangles.size(); ++i) {
+            for (const tinygltf::Primitive& source : model_.meshes[i].primitives) {
+                triangles[i] += triangle_count(source, accessors_);
+                check_total(triangles[i], max_triangles, fmt::format("triangles of meshes[{}]", i), file_);
+            }
+        }
+        std::size_t all_triangles = 0, all_primitives = 0, all_instances = 0;
+        for (const PlacedNode& node : nodes) {
+            const int mesh = model_.nodes[node.index].mesh;
+            if (mesh < 0) continue;
+            // No product overflows: both of its factors are within their limits.
+            const std::size_t count = instance_count(file_, accessors_, node.index);
+            check_total(count, max_instances, fmt::format("instances of nodes[{}]", node.index), file_);
+            check_total(all_instances += count, max_instances, "instances", file_);
+            check_total(all_triangles += count * triangles[mesh], max_triangles, "triangles", file_);
+            check_total(all_primitives += count * model_.meshes[mesh].primitives.size(), max_primitives, "primitives",
+                        file_);
+        }
+    }
+
+    void add_node(const PlacedNode& node) {
+        const int mesh = model_.nodes[node.index].mesh;
+        const std::string object = fmt::format("nodes[{}]", node.index);
+        if (model_.nodes[node.index].skin >= 0) warnings_.add("its skin is ignored, it is at rest", object);
+        scene_.mesh_nodes.push_back(
+            {std::uint32_t(node.index), model_.nodes[node.index].name, std::uint32_t(scene_.triangles.size())});
+        for (const glm::dmat4& to_world : instances(file_, accessors_, node)) {
+            const std::optional<Placement> placement = Placement::of(to_world);
+            if (!placement) {
+                warnings_.add("its mesh is dropped, the transform is singular", object);
+                continue;
+            }
+            VertexBlocks blocks;
+            for (std::size_t i = 0; i < model_.meshes[mesh].primitives.size(); ++i) {
+                add_primitive(node.index, mesh, i, *placement, blocks);
+            }
+        }
+    }
+
+    /// First vertex in the scene of what primitives of one mesh instance share: the same attributes.
+    using VertexBlocks = std::map<std::array<const void*, 6>, std::size_t>;
+
+    void add_primitive(int node, int mesh, std::size_t index, const Placement& placement, VertexBlocks& blocks) {
+        const tinygltf::Primitive& source = model_.meshes[mesh].primitives[index];
+        if (!has_triangles(source)) {
+            warnings_.add(
+                source.mode < TINYGLTF_MODE_TRIANGLES ? "points and lines are skipped" : "skipped, it has no POSITION",
+                fmt::format("meshes[{}].primitives[{}]", mesh, index));
+            return;
+        }
+        const std::uint32_t material = material_index(source);
+        const LocalPrimitive& local = primitives_.read(node, mesh, index, vertex_needs(scene_.materials[material]));
+        if (local.normals) {
+            add_smooth(local, placement, material, first_vertex(local, node, placement, blocks));
+        } else {
+            add_flat(local, node, placement, material);
+        }
+    }
+
+    /// The material of a primitive; glTF's default, added once, where it names none.
+    std::uint32_t material_index(const tinygltf::Primitive& primitive) {
+        if (primitive.material >= 0) return std::uint32_t(primitive.material);
+        if (scene_.materials.size() == file_materials_) scene_.materials.emplace_back().name = "default";
+        return std::uint32_t(file_materials_);
+    }
+
+    /// Vertex i of a primitive in the world, its position checked, without its normal.
+    Vertex placed(const LocalPrimitive& local, std::size_t i, int node, const Placement& placement) const {
+        Vertex vertex;
+        vertex.position = placement.point((*local.positions)[i]);
+        const glm::dvec3& p = vertex.position;
+        if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= max_coordinate) || !is_finite(p)) {
+            bad_scene(file_.name, fmt::format("the world position of a vertex of nodes[{}]", node), to_text(p),
+                      fmt::format("the limit is {}", max_coordinate));
+        }
+        for (std::size_t set = 0; set < 2; ++set) {
+            if (local.uv[set]) vertex.uv[set] = glm::vec2((*local.uv[set])[i]);
+        }
+        if (local.colors) vertex.color = glm::vec4((*local.colors)[i]);
+        if (local.tangents) vertex.tangent = placement.tangent((*local.tangents)[i]);
+        return vertex;
+    }
+
+    std::uint32_t add_vertex(const Vertex& vertex) {
+        const std::size_t i = scene_.positions.size();
+        check_total(i + 1, max_vertices, "vertices", file_);
+        scene_.positions.push_back(vertex.position);
+        scene_.normals.push_back(vertex.normal);
+        for (std::size_t set = 0; set < 2; ++set) append(scene_.uv[set], i, vertex.uv[set], no_uv);
+        append(scene_.colors, i, vertex.color, white);
+        append(scene_.tangents, i, vertex.tangent, no_tangent);
+        return std::uint32_t(i);
+    }
+
+    /// Another vertex like vertex i, with a normal of its own.
+    std::uint32_t add_copy(std::size_t i, const glm::vec3& normal) {
+        return add_vertex({scene_.positions[i],
+                           normal,
+                           {element(scene_.uv[0], i), element(scene_.uv[1], i)},
+                           element(scene_.colors, i),
+                           element(scene_.tangents, i)});
+    }
+
+    /// Puts the vertices of a primitive with normals into the scene, once an instance, and returns the first.
+    std::size_t first_vertex(const LocalPrimitive& local, int node, const Placement& placement, VertexBlocks& blocks) {
+        const auto [block, is_new] = blocks.try_emplace({local.positions.get(), local.normals.get(), local.uv[0].get(),
+                                                         local.uv[1].get(), local.colors.get(), local.tangents.get()},
+                                                        scene_.positions.size());
+        for (std::size_t i = 0; is_new && i < local.positions->size(); ++i) {
+            Vertex vertex = placed(local, i, node, placement);
+            vertex.normal = placement.normal((*local.normals)[i]);
+            add_vertex(vertex);
+        }
+        return block->second;
+    }
+
+    /// cross(p1 - p0, p2 - p0) as a unit vector; zero, and counted, where the area is zero.
+    glm::vec3 geometric_normal(const std::array<glm::dvec3, 3>& p) {
+        const glm::vec3 normal(unit_or_zero(glm::cross(p[1] - p[0], p[2] - p[0])));
+        if (normal == glm::vec3(0.0f)) ++degenerate_triangles_;
+        return normal;
+    }
+
+    /// The corners counter-clockwise in the world: a mirroring transform turns them over.
+    static Corners wound(Corners corners, const Placement& placement) {
+        if (placement.mirrored) std::swap(corners[1], corners[2]);
+        return corners;
+    }
+
+    void add_smooth(const LocalPrimitive& local, const Placement& placement, std::uint32_t material,
+                    std::size_t first) {
+        for (const Corners& corners : local.triangles) {
+            Triangle triangle{wound(corners, placement), material};
+            std::array<glm::dvec3, 3> p;
+            for (int k = 0; k < 3; ++k) {
+                triangle.vertex[k] += std::uint32_t(first);
+                p[k] = scene_.positions[triangle.vertex[k]];
+            }
+            const glm::vec3 geometric = geometric_normal(p);
+            if (geometric == glm::vec3(0.0f)) continue;
+            for (int k = 0; k < 3; ++k) {
+                if (scene_.normals[triangle.vertex[k]] != glm::vec3(0.0f)) continue;
+                triangle.vertex[k] = add_copy(triangle.vertex[k], geometric);
+                warnings_.add("no direction, the triangle's own is used", "a normal");
+            }
+            scene_.triangles.push_back(triangle);
+        }
+    }
+
+    /// Three vertices a triangle with its own normal, as glTF 2.0, section 3.7.2.1, asks for where NORMAL is missing.
+    void add_flat(const LocalPrimitive& local, int node, const Placement& placement, std::uint32_t material) {
+        for (const Corners& corners : local.triangles) {
+            Triangle triangle{wound(corners, placement), material};
+            std::array<Vertex, 3> vertices;
+            for (int k = 0; k < 3; ++k) vertices[k] = placed(local, triangle.vertex[k], node, placement);
+            const glm::vec3 geometric =
+                geometric_normal({vertices[0].position, vertices[1].position, vertices[2].position});
+            if (geometric == glm::vec3(0.0f)) continue;
+            for (int k = 0; k < 3; ++k) {
+                vertices[k].normal = geometric;
+                triangle.vertex[k] = add_vertex(vertices[k]);
+            }
+            scene_.triangles.push_back(triangle);
+        }
+    }
+
+    const GltfFile& file_;
+    const tinygltf::Model& model_;
+    GltfAccessors& accessors_;
+    PrimitiveReader primitives_;
+    Scene& scene_;
+    Warnings& warnings_;
+    const std::size_t file_materials_;
+    std::size_t degenerate_triangles_ = 0;
+};
+
+}  // namespace
+
+std::vector<bool> used_materials(const GltfFile& file, const tinygltf::Model& model,
+                                 const std::vector<PlacedNode>& nodes) {
+    std::vector<bool> is_used(file.document.value("materials", nlohmann::json::array()).size());
+    std::vector<bool> is_seen(model.meshes.size());
+    for (const PlacedNode& node : nodes) {
+        const int mesh = model.nodes[node.index].mesh;
+        if (mesh < 0 || is_seen[mesh]) continue;
+        is_seen[mesh] = true;
+        for (const tinygltf::Primitive& primitive : model.meshes[mesh].primitives) {
+            if (primitive.material >= 0 && has_triangles(primitive)) is_used[primitive.material] = true;
+        }
+    }
+    return is_used;
+}
+
+void add_meshes(const GltfFile& file, const tinygltf::Model& model, GltfAccessors& accessors,
+                const std::vector<PlacedNode>& nodes, Scene& scene, Warnings& warnings) {
+    MeshAdder(file, model, accessors, scene, warnings).add(nodes);
+}
+
+}  // namespace vkcppm

@@ -1,0 +1,163 @@
+#include "scene/gltf/picture.h"
+
+#include <algorithm>
+#include <array>
+#include <csetjmp>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <png.h>
+#include <turbojpeg.h>
+
+namespace vkcppm {
+
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+bool starts_with(Bytes bytes, std::string_view signature) {
+    return bytes.size() >= signature.size() && std::memcmp(bytes.data(), signature.data(), signature.size()) == 0;
+}
+
+bool is_png(Bytes bytes) { return starts_with(bytes, "\x89PNG\r\n\x1a\n"); }
+bool is_jpeg(Bytes bytes) { return starts_with(bytes, "\xff\xd8\xff"); }
+
+[[noreturn]] void refuse_format() { throw std::runtime_error("neither PNG nor JPEG"); }
+
+/// libpng's state, which goes with its owner even where that one's constructor throws.
+struct PngState {
+    png_structp png = nullptr;
+    png_infop info = nullptr;
+    PngState() = default;
+    PngState(const PngState&) = delete;
+    PngState& operator=(const PngState&) = delete;
+    ~PngState() { png_destroy_read_struct(&png, &info, nullptr); }
+};
+
+/// libpng over bytes in memory. Its errors are long jumps: they cross no frame but libpng's and guarded()'s, and none
+/// of them holds anything to destroy.
+class PngReader {
+public:
+    explicit PngReader(Bytes bytes) : rest_(bytes) {
+        state_.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, on_error, on_warning);
+        state_.info = state_.png ? png_create_info_struct(state_.png) : nullptr;
+        if (!state_.info) throw std::bad_alloc();
+        png_set_read_fn(state_.png, this, on_read);
+        guarded([](PngReader& reader) { png_read_info(reader.state_.png, reader.state_.info); });
+    }
+
+    Extent size() const {
+        return {png_get_image_width(state_.png, state_.info), png_get_image_height(state_.png, state_.info)};
+    }
+
+    std::vector<std::uint8_t> rgba() {
+        guarded([](PngReader& reader) {
+            png_set_expand(reader.state_.png);
+            png_set_scale_16(reader.state_.png);
+            png_set_gray_to_rgb(reader.state_.png);
+            png_set_add_alpha(reader.state_.png, 0xff, PNG_FILLER_AFTER);
+            png_set_interlace_handling(reader.state_.png);
+            png_read_update_info(reader.state_.png, reader.state_.info);
+        });
+        const std::size_t stride = 4 * std::size_t(size().width);
+        std::vector<std::uint8_t> texels(stride * size().height);
+        rows_.resize(size().height);
+        for (std::size_t y = 0; y < rows_.size(); ++y) rows_[y] = texels.data() + y * stride;
+        guarded([](PngReader& reader) { png_read_image(reader.state_.png, reader.rows_.data()); });
+        return texels;
+    }
+
+private:
+    void guarded(void (*step)(PngReader&)) {
+        if (!completes(step)) throw std::runtime_error(fmt::format("broken PNG: {}", message_.data()));
+    }
+
+    bool completes(void (*step)(PngReader&)) {
+        if (setjmp(png_jmpbuf(state_.png))) return false;
+        step(*this);
+        return true;
+    }
+
+    [[noreturn]] static void on_error(png_structp png, png_const_charp message) {
+        auto& reader = *static_cast<PngReader*>(png_get_error_ptr(png));
+        std::strncpy(reader.message_.data(), message, reader.message_.size() - 1);
+        png_longjmp(png, 1);
+    }
+
+    static void on_warning(png_structp, png_const_charp) {}  // of chunks that mean nothing here
+
+    static void on_read(png_structp png, png_bytep out, std::size_t size) {
+        auto& reader = *static_cast<PngReader*>(png_get_io_ptr(png));
+        if (size > reader.rest_.size()) png_error(png, "the data ends early");
+        std::memcpy(out, reader.rest_.data(), size);
+        reader.rest_ = reader.rest_.subspan(size);
+    }
+
+    Bytes rest_;
+    PngState state_;
+    std::vector<png_bytep> rows_;
+    std::array<char, 200> message_{};
+};
+
+class JpegReader {
+public:
+    explicit JpegReader(Bytes bytes) : bytes_(bytes), decoder_(tjInitDecompress(), tjDestroy) {
+        if (!decoder_) throw std::bad_alloc();
+        int subsampling, color_space;
+        check(tjDecompressHeader3(decoder_.get(), bytes_.data(), bytes_.size(), &width_, &height_, &subsampling,
+                                  &color_space));
+        if (width_ <= 0 || height_ <= 0) {
+            throw std::runtime_error("broken JPEG: its header has no picture");  // tables alone
+        }
+        if (color_space == TJCS_CMYK || color_space == TJCS_YCCK) {
+            throw std::runtime_error("a JPEG of four inks (CMYK) has no colours that glTF defines");
+        }
+    }
+
+    Extent size() const { return {std::uint32_t(width_), std::uint32_t(height_)}; }
+
+    std::vector<std::uint8_t> rgba() {
+        std::vector<std::uint8_t> texels(4 * size().pixels());
+        // A small file may hold endless passes over the picture: the flag ends them at 500.
+        check(tjDecompress2(decoder_.get(), bytes_.data(), bytes_.size(), texels.data(), width_, 4 * width_, height_,
+                            TJPF_RGBA, TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS));
+        return texels;
+    }
+
+private:
+    /// Warnings count as well: they are about data that is missing or damaged.
+    void check(int result) {
+        if (result != 0) throw std::runtime_error(fmt::format("broken JPEG: {}", tjGetErrorStr2(decoder_.get())));
+    }
+
+    Bytes bytes_;
+    std::unique_ptr<void, int (*)(tjhandle)> decoder_;
+    int width_ = 0, height_ = 0;
+};
+
+}  // namespace
+
+std::string_view foreign_format(Bytes bytes) {
+    if (starts_with(bytes, "\xabKTX 20\xbb")) return "KTX2";
+    if (starts_with(bytes, "RIFF") && bytes.size() >= 12 && starts_with(bytes.subspan(8), "WEBP")) return "WebP";
+    if (starts_with(bytes, "DDS ")) return "DDS";
+    return {};
+}
+
+Extent picture_size(Bytes bytes) {
+    if (is_png(bytes)) return PngReader(bytes).size();
+    if (is_jpeg(bytes)) return JpegReader(bytes).size();
+    refuse_format();
+}
+
+std::vector<std::uint8_t> decode_picture(Bytes bytes) {
+    if (is_png(bytes)) return PngReader(bytes).rgba();
+    if (is_jpeg(bytes)) return JpegReader(bytes).rgba();
+    refuse_format();
+}
+
+}  // namespace vkcppm

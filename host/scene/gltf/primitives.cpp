@@ -1,0 +1,227 @@
+#include "scene/gltf/primitives.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <tiny_gltf.h>
+
+#include "scene/bad_scene.h"
+#include "scene/gltf/limits.h"
+#include "scene/gltf/values.h"
+
+namespace vkcppm {
+
+namespace {
+
+using nlohmann::json;
+
+/// The triangles of glTF 2.0, section 3.7.2.1, in its order and winding: a list, a strip or a fan of `indices`.
+std::vector<Corners> assemble_triangles(int mode, const std::vector<std::uint32_t>& indices) {
+    std::vector<Corners> triangles;
+    const std::size_t n = indices.size();
+    if (mode == TINYGLTF_MODE_TRIANGLES) {
+        for (std::size_t i = 0; i + 2 < n; i += 3) triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+    } else if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
+        for (std::size_t i = 0; i + 2 < n; ++i) {
+            triangles.push_back({indices[i], indices[i + 1 + i % 2], indices[i + 2 - i % 2]});
+        }
+    } else {
+        for (std::size_t i = 0; i + 2 < n; ++i) triangles.push_back({indices[i + 1], indices[i + 2], indices[0]});
+    }
+    return triangles;
+}
+
+/// How many corners a primitive has, or 0 where it makes no triangles.
+std::size_t corner_count(const tinygltf::Primitive& source, const GltfAccessors& accessors) {
+    if (!has_triangles(source)) return 0;
+    return accessors.count(source.indices >= 0 ? source.indices : source.attributes.at("POSITION"));
+}
+
+bool is_all_zero(const std::vector<double>& weights) {
+    return std::ranges::all_of(weights, [](double weight) { return weight == 0.0; });
+}
+
+}  // namespace
+
+bool has_triangles(const tinygltf::Primitive& source) {
+    return source.mode >= TINYGLTF_MODE_TRIANGLES && source.attributes.contains("POSITION");
+}
+
+std::size_t triangle_count(const tinygltf::Primitive& source, const GltfAccessors& accessors) {
+    const std::size_t corners = corner_count(source, accessors);
+    return source.mode == TINYGLTF_MODE_TRIANGLES ? corners / 3 : std::max<std::size_t>(corners, 2) - 2;
+}
+
+const LocalPrimitive& PrimitiveReader::read(int node, int mesh, std::size_t index, const VertexNeeds& needs) {
+    const tinygltf::Primitive& source = model_.meshes[mesh].primitives[index];
+    const bool has_own_weights = !source.targets.empty() && file_.document["nodes"][node].contains("weights");
+    const auto [found, is_new] = primitives_.try_emplace({mesh, index, has_own_weights ? node : -1});
+    if (!is_new) return found->second;
+
+    const std::string object = fmt::format("meshes[{}].primitives[{}]", mesh, index);
+    const std::size_t corners = corner_count(source, accessors_);
+    if (source.mode == TINYGLTF_MODE_TRIANGLES ? corners % 3 != 0 : corners < 3) {
+        warnings_.add("the corners that make no triangle are ignored", object);
+    }
+    std::vector<double> weights;
+    if (!source.targets.empty()) weights = weights_of(node, mesh);
+    if (weights.size() > source.targets.size()) {
+        bad_scene(file_.name, fmt::format("the number of weights of {}", object), fmt::to_string(weights.size()),
+                  fmt::format("it has {} targets", source.targets.size()));
+    }
+    return found->second = read_new(source, object, needs, weights);
+}
+
+/// The default weights of a mesh's morph targets: the node's, else the mesh's, else none.
+std::vector<double> PrimitiveReader::weights_of(int node, int mesh) const {
+    const json& owner = file_.document["nodes"][node];
+    return (owner.contains("weights") ? owner : file_.document["meshes"][mesh]).value("weights", std::vector<double>());
+}
+
+LocalPrimitive PrimitiveReader::read_new(const tinygltf::Primitive& source, const std::string& object,
+                                         const VertexNeeds& needs, const std::vector<double>& weights) {
+    LocalPrimitive primitive;
+    const int positions = source.attributes.at("POSITION");
+    const SharedVectors<3> at_rest = accessors_.vectors<3>(positions, "POSITION");
+    const std::size_t vertices = at_rest->size();
+    primitive.positions = morphed(at_rest, source, "POSITION", weights, object);
+    const bool is_morphed = primitive.positions != at_rest;
+    if (is_morphed || finite_.insert(positions).second) {
+        check_finite(*primitive.positions, fmt::format("accessors[{}]", positions), object);
+    }
+    primitive.normals = morphed(attribute<3>(source, "NORMAL", vertices, object), source, "NORMAL", weights, object);
+    for (std::size_t set = 0; set < 2; ++set) {
+        if (needs.uv[set]) primitive.uv[set] = uv(source, set, vertices, object);
+    }
+    primitive.colors = colors(source, vertices, object);
+    // Without normals there are no tangents either (glTF 2.0, section 3.7.2.1).
+    if (needs.tangents && primitive.normals) primitive.tangents = attribute<4>(source, "TANGENT", vertices, object);
+    primitive.triangles = assemble_triangles(source.mode, corner_indices(source, vertices, object));
+    return primitive;
+}
+
+/// The accessor of an attribute with one element a vertex; none where the primitive has no such attribute.
+std::optional<int> PrimitiveReader::accessor_of(const tinygltf::Primitive& source, const std::string& name,
+                                                std::size_t vertices, const std::string& object) const {
+    const auto found = source.attributes.find(name);
+    if (found == source.attributes.end()) return std::nullopt;
+    check_count(found->second, vertices, fmt::format("{} of {}", name, object));
+    return found->second;
+}
+
+void PrimitiveReader::check_count(int accessor, std::size_t vertices, const std::string& use) const {
+    const std::size_t count = accessors_.count(accessor);
+    if (count == vertices) return;
+    bad_scene(file_.name, fmt::format("accessors[{}].count ({})", accessor, use), fmt::to_string(count),
+              fmt::format("POSITION has {}", vertices));
+}
+
+/// The vectors of an attribute; null where the primitive has none.
+template <int N>
+SharedVectors<N> PrimitiveReader::attribute(const tinygltf::Primitive& source, const char* name, std::size_t vertices,
+                                            const std::string& object) {
+    const std::optional<int> accessor = accessor_of(source, name, vertices, object);
+    return accessor ? accessors_.vectors<N>(*accessor, name) : nullptr;
+}
+
+/// base + sum of weight * target (glTF 2.0, section 3.7.2.2); the base itself where nothing moves it.
+SharedVectors<3> PrimitiveReader::morphed(const SharedVectors<3>& base, const tinygltf::Primitive& source,
+                                          const char* name, const std::vector<double>& weights,
+                                          const std::string& object) {
+    if (!base || is_all_zero(weights)) return base;
+    morphed_vectors_ += base->size() * weights.size();
+    check_total(morphed_vectors_, max_read_vectors, "vectors of morph targets", file_);
+    auto moved = std::make_shared<std::vector<glm::dvec3>>(*base);
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+        const auto target = source.targets[k].find(name);
+        if (weights[k] == 0.0 || target == source.targets[k].end()) continue;
+        check_count(target->second, base->size(), fmt::format("{} of {}.targets[{}]", name, object, k));
+        const SharedVectors<3>& displacement = accessors_.vectors<3>(target->second, name);
+        for (std::size_t i = 0; i < moved->size(); ++i) (*moved)[i] += weights[k] * (*displacement)[i];
+    }
+    return moved;
+}
+
+void PrimitiveReader::check_finite(const std::vector<glm::dvec3>& positions, const std::string& accessor,
+                                   const std::string& object) const {
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        if (is_finite(positions[i])) continue;
+        bad_scene(file_.name, fmt::format("{} element {} (POSITION of {})", accessor, i, object), to_text(positions[i]),
+                  "a position must be finite");
+    }
+}
+
+/// A set of texture coordinates, zeros where they are no numbers; null, with a warning, where the primitive has none.
+SharedVectors<2> PrimitiveReader::uv(const tinygltf::Primitive& source, std::size_t set, std::size_t vertices,
+                                     const std::string& object) {
+    const std::string name = fmt::format("TEXCOORD_{}", set);
+    const std::optional<int> accessor = accessor_of(source, name, vertices, object);
+    if (!accessor) {
+        warnings_.add("it is missing, its material's texture is looked up at (0, 0)",
+                      fmt::format("{} of {}", name, object));
+        return nullptr;
+    }
+    const auto [cached, is_new] = uv_.try_emplace(*accessor);
+    if (!is_new) return cached->second;
+    cached->second = accessors_.vectors<2>(*accessor, name);
+    const auto is_usable = [](const glm::dvec2& uv) { return std::abs(uv.x) <= max_uv && std::abs(uv.y) <= max_uv; };
+    if (!std::ranges::all_of(*cached->second, is_usable)) {
+        warnings_.add(fmt::format("texture coordinates beyond {} or no numbers, (0, 0) is taken", max_uv),
+                      fmt::format("accessors[{}]", *accessor));
+        auto mended = std::make_shared<std::vector<glm::dvec2>>(*cached->second);
+        std::ranges::replace_if(*mended, std::not_fn(is_usable), glm::dvec2(0.0));
+        cached->second = mended;
+    }
+    return cached->second;
+}
+
+/// COLOR_0 as red, green, blue, alpha in 0..1; null where it is missing or white throughout.
+SharedVectors<4> PrimitiveReader::colors(const tinygltf::Primitive& source, std::size_t vertices,
+                                         const std::string& object) {
+    const std::optional<int> index = accessor_of(source, "COLOR_0", vertices, object);
+    if (!index) return nullptr;
+    const auto [cached, is_new] = colors_.try_emplace(*index);
+    if (!is_new) return cached->second;
+    auto colors = std::make_shared<std::vector<glm::dvec4>>();
+    if (accessors_.components(*index) == 3) {
+        for (const glm::dvec3& rgb : *accessors_.vectors<3>(*index, "COLOR_0")) colors->emplace_back(rgb, 1.0);
+    } else {
+        *colors = *accessors_.vectors<4>(*index, "COLOR_0");
+    }
+    const std::string accessor = fmt::format("accessors[{}]", *index);
+    for (std::size_t i = 0; i < colors->size(); ++i) {
+        glm::dvec4& color = (*colors)[i];
+        for (int c = 0; c < 4; ++c) {
+            if (std::isnan(color[c])) {
+                bad_scene(file_.name, fmt::format("{} element {} (COLOR_0 of {})", accessor, i, object),
+                          fmt::format("({}, {}, {}, {})", color.r, color.g, color.b, color.a), "it must be numbers");
+            }
+            if (color[c] < 0.0 || color[c] > 1.0) warnings_.add("vertex colours outside 0 to 1, clamped", accessor);
+            color[c] = std::clamp(color[c], 0.0, 1.0);
+        }
+    }
+    const bool is_white = std::ranges::all_of(*colors, [](const glm::dvec4& c) { return c == glm::dvec4(1.0); });
+    if (!is_white) cached->second = colors;
+    return cached->second;
+}
+
+/// The vertex of each corner in the order of the file: the indices, or 0, 1, 2... without them.
+std::vector<std::uint32_t> PrimitiveReader::corner_indices(const tinygltf::Primitive& source, std::size_t vertices,
+                                                           const std::string& object) {
+    if (source.indices < 0) {
+        std::vector<std::uint32_t> indices(vertices);
+        for (std::size_t i = 0; i < vertices; ++i) indices[i] = std::uint32_t(i);
+        return indices;
+    }
+    auto [indices, restart] = accessors_.indices(source.indices);
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+        if (indices[i] < vertices && indices[i] != restart) continue;
+        bad_scene(file_.name, fmt::format("accessors[{}] element {} (indices of {})", source.indices, i, object),
+                  fmt::to_string(indices[i]),
+                  fmt::format("POSITION has {} vertices, and {} is no index", vertices, restart));
+    }
+    return indices;
+}
+
+}  // namespace vkcppm

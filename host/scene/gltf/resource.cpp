@@ -1,0 +1,74 @@
+#include "scene/gltf/resource.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include "core/fnv1a.h"
+#include "scene/bad_scene.h"
+#include "scene/gltf/schema.h"
+#include "scene/gltf/uri.h"
+
+namespace vkcppm {
+
+std::optional<Bytes> read_bytes(const std::filesystem::path& path, std::size_t limit, std::string& why) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status)) {
+        why = "no such file";
+        return std::nullopt;
+    }
+    if (!std::filesystem::is_regular_file(status)) {
+        why = "not a regular file";
+        return std::nullopt;
+    }
+    std::ifstream stream(path, std::ios::binary | std::ios::ate);
+    Bytes bytes(stream ? std::min(std::size_t(stream.tellg()), limit) : 0);
+    stream.seekg(0);
+    if (!stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()))) {
+        why = "cannot be read";
+        return std::nullopt;
+    }
+    return bytes;
+}
+
+namespace {
+
+/// Refuses a file that is outside of `folder` once symbolic links are followed: an archive may bring some.
+void check_inside(const std::filesystem::path& path, const std::filesystem::path& folder, const std::string& uri,
+                  const std::string& object, const std::string& file) {
+    std::error_code error;
+    const std::filesystem::path target = std::filesystem::canonical(path, error);
+    if (error) return;  // there is no such file
+    const std::filesystem::path root = std::filesystem::canonical(folder.empty() ? "." : folder, error);
+    if (*target.lexically_relative(root).begin() != "..") return;
+    bad_scene(file, object, json_text(uri),
+              fmt::format("it must lie inside the scene's folder, it is a link to {}", target.string()));
+}
+
+}  // namespace
+
+std::optional<Bytes> read_uri(const std::string& uri, std::size_t limit, const std::string& object,
+                              const std::string& file, std::uint64_t& hash, std::string& why) {
+    if (is_data_uri(uri)) {
+        std::optional<Bytes> bytes = decode_data_uri(uri);
+        if (!bytes) {
+            bad_scene(file, object, json_text(uri.substr(0, 50)), "its data must be valid base64 or percent-encoded");
+        }
+        return bytes;
+    }
+    const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+    const std::optional<std::filesystem::path> path = resolve_uri(folder, uri);
+    if (!path) bad_scene(file, object, json_text(uri), "it must be a relative path inside the scene's folder");
+    check_inside(*path, folder, uri, object, file);
+    std::optional<Bytes> bytes = read_bytes(*path, limit, why);
+    if (bytes) {
+        hash = fnv1a(*bytes, hash);
+    } else {
+        why = fmt::format("{}: {}", json_text(uri), why);
+    }
+    return bytes;
+}
+
+}  // namespace vkcppm

@@ -1,0 +1,438 @@
+#include "scene/gltf/schema.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include <nlohmann/json.hpp>
+
+#include "scene/bad_scene.h"
+
+namespace vkcppm {
+
+namespace {
+
+using nlohmann::json;
+
+enum class Kind { boolean, string, number, numbers, integer, index, indices, index_map, index_maps, object, objects };
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double int_limit = std::numeric_limits<std::int32_t>::max();  // tinygltf holds these members as int
+constexpr double byte_limit = 9007199254740992.0;                       // 2^53: exact in double and far above any file
+
+/// One member of a JSON object. Which of the later fields matter follows from the kind.
+struct Field {
+    const char* name;
+    Kind kind;
+    bool required = false;
+    std::span<const Field> fields{};              // object, objects: the members
+    const char* collection = "";                  // index, indices, index_map(s): JSON pointer to the array referred to
+    std::size_t length = 0;                       // numbers: how many; 0 is any number of them
+    double minimum = -infinity;                   // integer
+    double maximum = infinity;                    // integer
+    unsigned multiple = 1;                        // integer: a multiple of this
+    std::span<const std::string_view> choices{};  // string
+    std::span<const int> values{};                // integer: any where empty
+};
+
+constexpr Field object(const char* name, std::span<const Field> fields, bool required = false) {
+    return {.name = name, .kind = Kind::object, .required = required, .fields = fields};
+}
+constexpr Field objects(const char* name, std::span<const Field> fields, bool required = false) {
+    return {.name = name, .kind = Kind::objects, .required = required, .fields = fields};
+}
+constexpr Field index(const char* name, const char* collection, bool required = false) {
+    return {.name = name, .kind = Kind::index, .required = required, .collection = collection};
+}
+constexpr Field number(const char* name, bool required = false) {
+    return {.name = name, .kind = Kind::number, .required = required};
+}
+constexpr Field numbers(const char* name, std::size_t length) {
+    return {.name = name, .kind = Kind::numbers, .length = length};
+}
+constexpr Field integer(const char* name, double minimum, double maximum, bool required = false) {
+    return {.name = name, .kind = Kind::integer, .required = required, .minimum = minimum, .maximum = maximum};
+}
+constexpr Field enumeration(const char* name, std::span<const int> values) {
+    return {.name = name, .kind = Kind::integer, .values = values};
+}
+constexpr Field choice(const char* name, std::span<const std::string_view> choices, bool required = false) {
+    return {.name = name, .kind = Kind::string, .required = required, .choices = choices};
+}
+constexpr Field index_map(const char* name, bool required = false) {
+    return {.name = name, .kind = Kind::index_map, .required = required, .collection = "/accessors"};
+}
+constexpr Field text(const char* name) { return {.name = name, .kind = Kind::string}; }
+
+constexpr std::string_view accessor_types[] = {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"};
+constexpr std::string_view camera_types[] = {"perspective", "orthographic"};
+constexpr std::string_view light_types[] = {"directional", "point", "spot"};
+constexpr std::string_view alpha_modes[] = {"OPAQUE", "MASK", "BLEND"};
+constexpr std::string_view meshopt_modes[] = {"ATTRIBUTES", "TRIANGLES", "INDICES"};
+constexpr std::string_view meshopt_filters[] = {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"};
+constexpr int mag_filters[] = {9728, 9729};
+constexpr int min_filters[] = {9728, 9729, 9984, 9985, 9986, 9987};
+constexpr int wraps[] = {10497, 33071, 33648};
+
+constexpr std::string_view supported_extensions[] = {
+    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",  "KHR_lights_punctual",
+    "KHR_materials_clearcoat", "KHR_materials_dispersion", "KHR_materials_emissive_strength",
+    "KHR_materials_ior",       "KHR_materials_specular",   "KHR_materials_transmission",
+    "KHR_materials_unlit",     "KHR_materials_volume",     "KHR_mesh_quantization",
+    "KHR_texture_transform",
+};
+
+constexpr const char* lights_pointer = "/extensions/KHR_lights_punctual/lights";
+
+constexpr Field fallback_fields[] = {{.name = "fallback", .kind = Kind::boolean}};
+constexpr Field buffer_extension_fields[] = {object("EXT_meshopt_compression", fallback_fields)};
+constexpr Field buffer_fields[] = {
+    integer("byteLength", 1, byte_limit, true),
+    text("uri"),
+    object("extensions", buffer_extension_fields),
+};
+
+constexpr Field meshopt_fields[] = {
+    index("buffer", "/buffers", true),          integer("byteOffset", 0, byte_limit),
+    integer("byteLength", 1, byte_limit, true), integer("byteStride", 2, 256, true),
+    integer("count", 1, byte_limit, true),      choice("mode", meshopt_modes, true),
+    choice("filter", meshopt_filters),
+};
+constexpr Field buffer_view_extension_fields[] = {object("EXT_meshopt_compression", meshopt_fields)};
+constexpr Field buffer_view_fields[] = {
+    index("buffer", "/buffers", true),
+    integer("byteOffset", 0, byte_limit),
+    integer("byteLength", 1, byte_limit, true),
+    {.name = "byteStride", .kind = Kind::integer, .minimum = 4, .maximum = 252, .multiple = 4},
+    object("extensions", buffer_view_extension_fields),
+};
+
+constexpr Field sparse_indices_fields[] = {
+    index("bufferView", "/bufferViews", true),
+    integer("byteOffset", 0, int_limit),
+    integer("componentType", 5121, 5125, true),
+};
+constexpr Field sparse_values_fields[] = {
+    index("bufferView", "/bufferViews", true),
+    integer("byteOffset", 0, int_limit),
+};
+constexpr Field sparse_fields[] = {
+    integer("count", 1, int_limit, true),
+    object("indices", sparse_indices_fields, true),
+    object("values", sparse_values_fields, true),
+};
+constexpr Field accessor_fields[] = {
+    index("bufferView", "/bufferViews"),
+    integer("byteOffset", 0, byte_limit),
+    integer("componentType", 5120, 5126, true),
+    {.name = "normalized", .kind = Kind::boolean},
+    integer("count", 1, byte_limit, true),
+    choice("type", accessor_types, true),
+    object("sparse", sparse_fields),
+};
+
+constexpr Field primitive_fields[] = {
+    index_map("attributes", true),
+    index("indices", "/accessors"),
+    index("material", "/materials"),
+    integer("mode", 0, 6),
+    {.name = "targets", .kind = Kind::index_maps, .collection = "/accessors"},
+};
+constexpr Field mesh_fields[] = {objects("primitives", primitive_fields, true), text("name"), numbers("weights", 0)};
+
+constexpr Field node_light_fields[] = {index("light", lights_pointer, true)};
+constexpr Field instancing_fields[] = {index_map("attributes", true)};
+constexpr Field node_extension_fields[] = {
+    object("KHR_lights_punctual", node_light_fields),
+    object("EXT_mesh_gpu_instancing", instancing_fields),
+};
+constexpr Field node_fields[] = {
+    text("name"),
+    index("camera", "/cameras"),
+    index("mesh", "/meshes"),
+    {.name = "children", .kind = Kind::indices, .collection = "/nodes"},
+    numbers("matrix", 16),
+    numbers("translation", 3),
+    numbers("rotation", 4),
+    numbers("scale", 3),
+    numbers("weights", 0),
+    object("extensions", node_extension_fields),
+};
+
+constexpr Field scene_fields[] = {text("name"), {.name = "nodes", .kind = Kind::indices, .collection = "/nodes"}};
+
+constexpr Field perspective_fields[] = {number("yfov", true), number("znear", true), number("zfar"),
+                                        number("aspectRatio")};
+constexpr Field orthographic_fields[] = {number("xmag", true), number("ymag", true), number("znear", true),
+                                         number("zfar", true)};
+constexpr Field camera_fields[] = {
+    choice("type", camera_types, true),
+    text("name"),
+    object("perspective", perspective_fields),
+    object("orthographic", orthographic_fields),
+};
+
+constexpr Field sampler_fields[] = {
+    enumeration("magFilter", mag_filters),
+    enumeration("minFilter", min_filters),
+    enumeration("wrapS", wraps),
+    enumeration("wrapT", wraps),
+};
+constexpr Field image_fields[] = {text("name"), text("uri"), text("mimeType"), index("bufferView", "/bufferViews")};
+constexpr Field texture_fields[] = {index("sampler", "/samplers"), index("source", "/images")};
+
+constexpr Field texture_transform_fields[] = {
+    numbers("offset", 2),
+    number("rotation"),
+    numbers("scale", 2),
+    integer("texCoord", 0, int_limit),
+};
+constexpr Field texture_info_extension_fields[] = {object("KHR_texture_transform", texture_transform_fields)};
+constexpr Field texture_info_fields[] = {
+    index("index", "/textures", true),
+    integer("texCoord", 0, int_limit),
+    object("extensions", texture_info_extension_fields),
+};
+constexpr Field normal_texture_fields[] = {
+    index("index", "/textures", true),
+    integer("texCoord", 0, int_limit),
+    number("scale"),
+    object("extensions", texture_info_extension_fields),
+};
+constexpr Field pbr_fields[] = {
+    numbers("baseColorFactor", 4),
+    number("metallicFactor"),
+    number("roughnessFactor"),
+    object("baseColorTexture", texture_info_fields),
+    object("metallicRoughnessTexture", texture_info_fields),
+};
+constexpr Field emissive_strength_fields[] = {number("emissiveStrength")};
+constexpr Field transmission_fields[] = {number("transmissionFactor"),
+                                         object("transmissionTexture", texture_info_fields)};
+constexpr Field clearcoat_fields[] = {
+    number("clearcoatFactor"),
+    object("clearcoatTexture", texture_info_fields),
+    number("clearcoatRoughnessFactor"),
+    object("clearcoatRoughnessTexture", texture_info_fields),
+    object("clearcoatNormalTexture", normal_texture_fields),
+};
+constexpr Field dispersion_fields[] = {number("dispersion")};
+constexpr Field ior_fields[] = {number("ior")};
+constexpr Field volume_fields[] = {
+    number("thicknessFactor"),
+    number("attenuationDistance"),
+    numbers("attenuationColor", 3),
+    object("thicknessTexture", texture_info_fields),
+};
+constexpr Field specular_fields[] = {
+    number("specularFactor"),
+    numbers("specularColorFactor", 3),
+    object("specularTexture", texture_info_fields),
+    object("specularColorTexture", texture_info_fields),
+};
+constexpr Field material_extension_fields[] = {
+    object("KHR_materials_emissive_strength", emissive_strength_fields),
+    object("KHR_materials_transmission", transmission_fields),
+    object("KHR_materials_ior", ior_fields),
+    object("KHR_materials_volume", volume_fields),
+    object("KHR_materials_specular", specular_fields),
+    object("KHR_materials_clearcoat", clearcoat_fields),
+    object("KHR_materials_dispersion", dispersion_fields),
+    object("KHR_materials_unlit", {}),
+};
+constexpr Field material_fields[] = {
+    text("name"),
+    object("pbrMetallicRoughness", pbr_fields),
+    object("normalTexture", normal_texture_fields),
+    object("occlusionTexture", texture_info_fields),
+    object("emissiveTexture", texture_info_fields),
+    numbers("emissiveFactor", 3),
+    choice("alphaMode", alpha_modes),
+    number("alphaCutoff"),
+    {.name = "doubleSided", .kind = Kind::boolean},
+    object("extensions", material_extension_fields),
+};
+
+constexpr Field spot_fields[] = {number("innerConeAngle"), number("outerConeAngle")};
+constexpr Field light_fields[] = {
+    text("name"),    choice("type", light_types, true), numbers("color", 3), number("intensity"),
+    number("range"), object("spot", spot_fields),
+};
+constexpr Field lights_fields[] = {objects("lights", light_fields, true)};
+constexpr Field root_extension_fields[] = {object("KHR_lights_punctual", lights_fields)};
+
+constexpr Field root_fields[] = {
+    index("scene", "/scenes"),
+    objects("scenes", scene_fields),
+    objects("nodes", node_fields),
+    objects("meshes", mesh_fields),
+    objects("accessors", accessor_fields),
+    objects("bufferViews", buffer_view_fields),
+    objects("buffers", buffer_fields),
+    objects("materials", material_fields),
+    objects("textures", texture_fields),
+    objects("images", image_fields),
+    objects("samplers", sampler_fields),
+    objects("cameras", camera_fields),
+    object("extensions", root_extension_fields),
+};
+
+class Checker {
+public:
+    Checker(const json& document, std::string_view file) : document_(document), file_(file) {}
+
+    void check_object(json& value, const std::string& path, std::span<const Field> fields) const {
+        if (!value.is_object()) fail(path, value, "it must be an object");
+        for (const Field& field : fields) {
+            const std::string member = path.empty() ? field.name : path + "." + field.name;
+            const auto found = value.find(field.name);
+            if (found != value.end()) {
+                check_field(*found, member, field);
+            } else if (field.required) {
+                bad_scene(file_, member, "missing", "glTF requires it");
+            }
+        }
+    }
+
+private:
+    void check_field(json& value, const std::string& path, const Field& field) const {
+        switch (field.kind) {
+            case Kind::boolean:
+                if (!value.is_boolean()) fail(path, value, "it must be true or false");
+                break;
+            case Kind::string: check_string(value, path, field.choices); break;
+            case Kind::number: check_number(value, path); break;
+            case Kind::numbers: check_numbers(value, path, field.length); break;
+            case Kind::integer: check_integer(value, path, field); break;
+            case Kind::index: check_index(value, path, field.collection); break;
+            case Kind::indices:
+                check_array(value, path);
+                for (std::size_t i = 0; i < value.size(); ++i) {
+                    check_index(value[i], element(path, i), field.collection);
+                }
+                break;
+            case Kind::index_map: check_index_map(value, path, field.collection); break;
+            case Kind::index_maps:
+                check_array(value, path);
+                for (std::size_t i = 0; i < value.size(); ++i) {
+                    check_index_map(value[i], element(path, i), field.collection);
+                }
+                break;
+            case Kind::object: check_object(value, path, field.fields); break;
+            case Kind::objects:
+                check_array(value, path);
+                for (std::size_t i = 0; i < value.size(); ++i) check_object(value[i], element(path, i), field.fields);
+                break;
+        }
+    }
+
+    void check_string(const json& value, const std::string& path, std::span<const std::string_view> choices) const {
+        if (!value.is_string()) fail(path, value, "it must be a string");
+        if (choices.empty()) return;
+        for (const std::string_view choice : choices) {
+            if (value.get_ref<const std::string&>() == choice) return;
+        }
+        fail(path, value, fmt::format("it must be one of {}", fmt::join(choices, ", ")));
+    }
+
+    /// Rewrites the number as floating point: tinygltf 2.7 truncates the integers of extensions to 32 bits.
+    void check_number(json& value, const std::string& path) const {
+        if (!value.is_number()) fail(path, value, "it must be a number");
+        value = value.get<double>();
+    }
+
+    void check_numbers(json& value, const std::string& path, std::size_t length) const {
+        check_array(value, path);
+        if (length > 0 && value.size() != length) {
+            bad_scene(file_, path, fmt::format("an array of {}", value.size()), fmt::format("it must hold {}", length));
+        }
+        for (std::size_t i = 0; i < value.size(); ++i) check_number(value[i], element(path, i));
+    }
+
+    void check_integer(const json& value, const std::string& path, const Field& field) const {
+        if (!value.is_number_integer()) fail(path, value, "it must be an integer");
+        const double number = value.get<double>();
+        if (number < field.minimum || number > field.maximum) {
+            fail(path, value, fmt::format("it must lie in {:.0f} to {:.0f}", field.minimum, field.maximum));
+        }
+        if (value.get<std::uint64_t>() % field.multiple != 0) {
+            fail(path, value, fmt::format("it must be a multiple of {}", field.multiple));
+        }
+        if (!field.values.empty() && std::ranges::find(field.values, number) == field.values.end()) {
+            fail(path, value, fmt::format("it must be one of {}", fmt::join(field.values, ", ")));
+        }
+    }
+
+    void check_index_map(const json& value, const std::string& path, const char* collection) const {
+        if (!value.is_object()) fail(path, value, "it must be an object");
+        for (const auto& [name, target] : value.items()) {
+            check_index(target, path + "[" + json_text(name) + "]", collection);
+        }
+    }
+
+    void check_index(const json& value, const std::string& path, const char* collection) const {
+        const json::json_pointer pointer(collection);
+        const std::size_t size = document_.contains(pointer) ? document_[pointer].size() : 0;
+        if (!value.is_number_integer()) fail(path, value, "it must be an index");
+        if (value.get<double>() < 0.0 || value.get<double>() >= double(size)) {
+            fail(path, value, fmt::format("{} has {}", pointer.back(), size));
+        }
+    }
+
+    void check_array(const json& value, const std::string& path) const {
+        if (!value.is_array()) fail(path, value, "it must be an array");
+    }
+
+    [[noreturn]] void fail(const std::string& path, const json& value, std::string_view limit) const {
+        bad_scene(file_, path.empty() ? "the JSON" : path, json_text(value), limit);
+    }
+
+    static std::string element(const std::string& path, std::size_t i) { return fmt::format("{}[{}]", path, i); }
+
+    const json& document_;
+    std::string_view file_;
+};
+
+/// `array`[i] of type `type` must have the member of that name, e.g. a spot light the object "spot".
+void require_type_member(const json& array, std::string_view path, std::string_view type, std::string_view file) {
+    for (std::size_t i = 0; i < array.size(); ++i) {
+        if (array[i]["type"] == type && !array[i].contains(type)) {
+            bad_scene(file, fmt::format("{}[{}].{}", path, i, type), "missing", "an object of this type requires it");
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> unsupported_extensions(const json& document, std::string_view member, std::string_view file) {
+    const json names = document.value(member, json::array());
+    if (!names.is_array()) bad_scene(file, member, json_text(names), "it must be an array");
+    std::vector<std::string> unsupported;
+    for (const json& name : names) {
+        if (!name.is_string()) bad_scene(file, member, json_text(name), "it must hold strings");
+        const auto& text = name.get_ref<const std::string&>();
+        if (std::ranges::find(supported_extensions, text) == std::end(supported_extensions)) {
+            unsupported.push_back(json_text(name));
+        }
+    }
+    return unsupported;
+}
+
+std::string json_text(const json& value) {
+    constexpr std::size_t limit = 60;
+    std::string text = value.dump(-1, ' ', true);
+    if (text.size() > limit) text = text.substr(0, limit - 3) + "...";
+    return text;
+}
+
+void check_gltf_schema(json& document, std::string_view file) {
+    Checker(document, file).check_object(document, "", root_fields);
+    const json none = json::array();
+    const json cameras = document.value("cameras", none);
+    for (const std::string_view type : camera_types) require_type_member(cameras, "cameras", type, file);
+    const json lights = document.value(json::json_pointer(lights_pointer), none);
+    require_type_member(lights, "KHR_lights_punctual.lights", "spot", file);
+}
+
+}  // namespace vkcppm

@@ -1,0 +1,169 @@
+#include "study/race.h"
+
+#include <algorithm>
+#include <cassert>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/process.h"
+#include "flat/flatten.h"
+#include "render/integrator.h"
+#include "render/render.h"
+#include "render/submission.h"
+#include "vk/device.h"
+
+namespace vkcppm {
+namespace {
+
+/// sums [pixels], empty at first.
+void add_squared_error(std::vector<double>& sums, const Image& image, const Image& reference) {
+    sums.resize(image.rgb.size());
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        const glm::dvec3 difference = glm::dvec3(image.rgb[i]) - glm::dvec3(reference.rgb[i]);
+        sums[i] += dot(difference, difference) / 3.0;
+    }
+}
+
+/// An entrant in the seed that runs.
+class Lane {
+public:
+    /// Starts a curve in `run`. Throws Error(out_of_device_memory) with the entrant.
+    Lane(Device& device, const FlatScene& flat, const Scene& scene, RaceRun& run, std::uint32_t seed)
+        : run_(run), settings_(run.entrant.settings) {
+        settings_.seed = seed;
+        try {
+            integrator_ = std::make_unique<Integrator>(device, flat, camera_of(settings_, scene), settings_);
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::out_of_device_memory) throw;
+            throw Error(error.code(), fmt::format("entrant '{}': {}; the entrants before it hold {} of the device's {} "
+                                                  "bytes",
+                                                  run.entrant.name, error.what(), device.allocated_bytes(),
+                                                  device.info().memory_bytes));
+        }
+        run_.curves.emplace_back();
+    }
+
+    bool finished() const {
+        return integrator_->completed() >= settings_.iterations ||
+               (settings_.seconds && integrator_->seconds() >= *settings_.seconds);
+    }
+
+    /// Of its iterations or its time, 0..1.
+    double done() const {
+        const double of_iterations = double(integrator_->completed()) / settings_.iterations;
+        const double of_time = settings_.seconds ? integrator_->seconds() / *settings_.seconds : 0.0;
+        return std::min(1.0, std::max(of_iterations, of_time));
+    }
+
+    /// What the entrants alternate by: the one with the least is behind.
+    double at() const { return settings_.seconds ? integrator_->seconds() : integrator_->completed(); }
+
+    /// True once it has a picture.
+    bool began() const { return integrator_->completed() > 0; }
+
+    void take_turn(const Image& reference) {
+        integrator_->run(submission_size(integrator_->completed(), integrator_->seconds(), settings_, is_snapshot));
+        if (is_snapshot(integrator_->completed()) || finished()) take_snapshot(reference);
+    }
+
+    /// Adds its end to the run.
+    void end(const Image& reference) {
+        take_snapshot(reference);
+        integrator_->fill(run_.reports.emplace_back());
+        Image image = integrator_->resolve();
+        add_squared_error(run_.squared_error, image, reference);
+        if (run_.curves.size() > 1) return;
+        run_.image = std::move(image);
+        run_.radius = integrator_->radii();
+    }
+
+    std::uint64_t invalid() const { return integrator_->invalid(); }
+
+private:
+    void take_snapshot(const Image& reference) {
+        Curve& curve = run_.curves.back();
+        if (!curve.empty() && curve.back().iterations == integrator_->completed()) return;
+        curve.push_back({integrator_->completed(), integrator_->seconds(), compare(integrator_->resolve(), reference)});
+    }
+
+    RaceRun& run_;
+    Settings settings_;
+    std::unique_ptr<Integrator> integrator_;
+};
+
+/// The lane whose turn it is: the one that is behind. None where all are finished.
+Lane* next_lane(std::vector<Lane>& lanes) {
+    Lane* next = nullptr;
+    for (Lane& lane : lanes) {
+        if (!lane.finished() && (!next || lane.at() < next->at())) next = &lane;
+    }
+    return next;
+}
+
+}  // namespace
+
+RaceSettings resolve_race(const RaceSettings& race, const Scene& scene) {
+    RaceSettings resolved = race;
+    for (std::size_t e = 0; e < race.entrants.size(); ++e) {
+        Entrant& entrant = resolved.entrants[e];
+        const auto same = [&](const Entrant& other) { return other.name == entrant.name; };
+        if (std::any_of(race.entrants.begin(), race.entrants.begin() + std::ptrdiff_t(e), same)) {
+            throw Error(ExitCode::usage, fmt::format("--estimators: '{}' stands there twice", entrant.name));
+        }
+        try {
+            entrant.settings = resolve_settings(entrant.settings, scene);
+        } catch (const Error& error) {
+            throw Error(error.code(), fmt::format("{} (entrant '{}')", error.what(), entrant.name));
+        }
+    }
+    return resolved;
+}
+
+RaceResult run_race(const Scene& scene, const RaceSettings& race, const Image& reference, Device& device,
+                    const KeepRacing& keep_racing) {
+    assert(!race.entrants.empty() && race.seeds > 0);
+    RaceResult result;
+    for (const Entrant& entrant : race.entrants) result.runs.push_back({entrant, {}, {}, {}, {}, {}});
+    const auto is_sppm = [](const Entrant& entrant) { return entrant.settings.estimator == "sppm"; };
+    const auto sppm = std::ranges::find_if(race.entrants, is_sppm);
+    if (sppm != race.entrants.end()) result.baseline = std::size_t(sppm - race.entrants.begin());
+
+    const FlatScene flat = flatten(scene);
+    const double begin = wall_now();
+    for (std::uint32_t s = 0; s < race.seeds && !result.interrupted; ++s) {
+        const std::uint32_t seed = race.entrants.front().settings.seed + s;
+        std::vector<Lane> lanes;
+        for (RaceRun& run : result.runs) lanes.emplace_back(device, flat, scene, run, seed);
+        const auto progress = [&] {
+            double done = s;
+            for (const Lane& lane : lanes) done += lane.done() / double(lanes.size());
+            return RaceProgress{s, race.seeds, done / race.seeds, wall_now() - begin, result.runs};
+        };
+        while (Lane* lane = next_lane(lanes)) {
+            lane->take_turn(reference);
+            result.interrupted = !keep_racing(progress()) || result.interrupted;
+            // The first seed goes on until all have a picture.
+            if (result.interrupted && (s > 0 || std::ranges::all_of(lanes, &Lane::began))) break;
+        }
+        if (next_lane(lanes) && s > 0) {
+            for (RaceRun& run : result.runs) run.curves.pop_back();
+            break;
+        }
+        result.seeds.push_back(seed);
+        for (std::size_t e = 0; e < lanes.size(); ++e) {
+            lanes[e].end(reference);
+            if (lanes[e].invalid() == 0) continue;
+            result.warnings.push_back(fmt::format("{}, seed {}: {} contributions were not finite and were dropped",
+                                                  result.runs[e].entrant.name, seed, lanes[e].invalid()));
+        }
+    }
+    for (RaceRun& run : result.runs) {
+        for (double& error : run.squared_error) error /= double(result.seeds.size());
+    }
+    return result;
+}
+
+}  // namespace vkcppm
