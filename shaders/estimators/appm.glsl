@@ -19,13 +19,13 @@ float appm_kernel_weight(float q) {
 }
 
 float appm_first_radius2(uint pixel) {
-    PixelState state = pixel_at(pixel);
+    PixelState state = pixels_at(pixel);
     return state.count > 0.0 ? moment_at(APPM_FIRST_RADIUS2, pixel) : state.radius2;
 }
 
 // r_d^2 in the iteration at hand, n = count + 1.
 float appm_pilot2(uint pixel) {
-    return APPM_PILOT * APPM_PILOT * appm_first_radius2(pixel) * pow(pixel_at(pixel).count + 1.0, -0.25);
+    return APPM_PILOT * APPM_PILOT * appm_first_radius2(pixel) * pow(pixels_at(pixel).count + 1.0, -0.25);
 }
 
 // The stencil reaches a step and a bandwidth far.
@@ -54,7 +54,7 @@ void appm_record(Accepted photon, bool inside) {
 
 void appm_begin(uint pixel) {
     appm_sums = vec2(moment_at(APPM_SECOND_MOMENT_NOW, pixel), moment_at(APPM_LAPLACIAN_NOW, pixel));
-    appm_radius2 = pixel_at(pixel).radius2;
+    appm_radius2 = pixels_at(pixel).radius2;
     appm_pilot2_now = appm_pilot2(pixel);
     appm_weight = hit_weight_at(pixel).weight;
 }

@@ -11,7 +11,7 @@ const uint FTEST_SQUARES = 2u * DISC_CELLS;
 const uint FTEST_LOW = DISC_CELLS + RINGS;  // from a mean or a sum of squares to its low part
 const uint FTEST_MOMENTS = 3u * DISC_CELLS + 2u * RINGS;
 
-layout(binding = BIND_QUANTILES, scalar) readonly buffer QuantileBlock { float f_quantiles[]; };
+QUANTILES(READS)
 
 // Contributions a cell that this invocation has accepted, in registers as `counted`.
 float contributed[DISC_CELLS];
@@ -70,7 +70,7 @@ float f_threshold(uint rings, float m) {
     float x = min(2.0 / (m - 1.0), 1.0) * float(F_QUANTILES - 1);
     uint i = min(uint(x), uint(F_QUANTILES - 2));
     uint row = (rings - 1u) * F_QUANTILES + i;
-    return mix(f_quantiles[row], f_quantiles[row + 1u], x - float(i));
+    return mix(quantiles[row], quantiles[row + 1u], x - float(i));
 }
 
 // F = [m sum(mean_i - mean)^2 / (n - 1)] / [within / (n (m - 1))] over n cells, over its threshold. Fewer than three

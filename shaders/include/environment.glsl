@@ -2,8 +2,8 @@
 // proportion to the flux into the scene: see entry.glsl.
 #include "include/angle.glsl"
 
-layout(binding = BIND_ENVIRONMENT) uniform samplerBuffer environment;
-layout(binding = BIND_ENVIRONMENT_ALIAS) uniform usamplerBuffer environment_alias;
+ENVIRONMENT(FLOAT_TEXELS)
+ENVIRONMENT_ALIAS(TEXELS)
 
 // The pixel that is seen in `direction`, a unit vector away from the scene.
 uint environment_pixel(vec3 direction) {
@@ -16,11 +16,11 @@ uint environment_pixel(vec3 direction) {
 
 // Radiance that arrives from `direction`, a unit vector away from the scene.
 vec3 environment_radiance(vec3 direction) {
-    return texelFetch(environment, int(environment_pixel(direction))).rgb;
+    return texelFetch(environment_texels, int(environment_pixel(direction))).rgb;
 }
 
 // About the mean of entry_area over the directions of a pixel.
-float environment_area(uint pixel) { return uintBitsToFloat(texelFetch(environment_alias, int(2u * pixel + 1u)).x); }
+float environment_area(uint pixel) { return uintBitsToFloat(texelFetch(environment_alias_texels, int(2u * pixel + 1u)).x); }
 
 // A direction away from the scene: a pixel in proportion to the mean channel of its flux into the scene, then uniform
 // in its solid angle. Returns radiance over the density, for a flux of 1 of the whole map: the colour of the pixel
@@ -30,10 +30,10 @@ vec3 sample_environment(uint bits, float keep, vec2 u, out vec3 direction) {
     uint high, low;
     umulExtended(bits, count, high, low);
     uint pixel = high;
-    vec4 entry = texelFetch(environment, int(pixel));
+    vec4 entry = texelFetch(environment_texels, int(pixel));
     if (keep >= entry.w) {
-        pixel = texelFetch(environment_alias, int(2u * pixel)).x;
-        entry = texelFetch(environment, int(pixel));
+        pixel = texelFetch(environment_alias_texels, int(2u * pixel)).x;
+        entry = texelFetch(environment_texels, int(pixel));
     }
     uint row = pixel / params.environment.x;
     // Uniform in solid angle over the pixel: in azimuth and in the cosine of the polar angle.

@@ -1,7 +1,7 @@
 // The hashed grid of photons, of up to GRID_LEVELS levels, each a table of its own. Cells of one row along x stand
 // together in the table. While the box of cells fits the table the hash is the identity (dense rows); else runs of
 // HASH_RUN cells along x are hashed, and whoever reads a bucket must compare the photon's own cell.
-layout(binding = BIND_GRID, scalar) buffer GridBlock { Grid grid; };
+GRID(VALUE)
 
 #define HASH_RUN 8
 

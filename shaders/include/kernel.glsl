@@ -4,7 +4,8 @@
 #extension GL_KHR_shader_subgroup_ballot : require
 #include "shared/types.h"
 #include "shared/estimators.h"
-#include "shared/bindings.h"
+#include "shared/buffers.h"
+#include "include/records.glsl"
 
 layout(local_size_x_id = SPEC_WORKGROUP) in;
 layout(constant_id = SPEC_STACK) const uint STACK = 32;
@@ -18,8 +19,8 @@ layout(constant_id = SPEC_LEVELS) const uint LEVELS = GRID_LEVELS;
 layout(constant_id = SPEC_WAITS) const uint WAITS = 0u;
 
 layout(push_constant, scalar) uniform LaunchBlock { Launch launch; };
-layout(binding = BIND_PARAMS, scalar) uniform ParamsBlock { Params params; };
-layout(binding = BIND_STATUS, scalar) buffer StatusBlock { Status status; };
+PARAMS(UNIFORM)
+STATUS(VALUE)
 
 // Index of this work group; the host folds dispatches of more than 65,535 groups into y.
 uint work_group() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }

@@ -1,41 +1,12 @@
 // Light sources. Reads lights, and textures of those that have them.
 #include "include/entry.glsl"
 
-layout(binding = BIND_LIGHTS) uniform usamplerBuffer lights;
-
-#define LIGHT_TEXELS 6
-
-Light light_at(uint index) {
-    int texel = int(index) * LIGHT_TEXELS;
-    uvec4 a = texelFetch(lights, texel);
-    uvec4 b = texelFetch(lights, texel + 1);
-    uvec4 c = texelFetch(lights, texel + 2);
-    uvec4 d = texelFetch(lights, texel + 3);
-    Light light;
-    light.position = uintBitsToFloat(a.xyz);
-    light.kind = a.w;
-    light.e1 = uintBitsToFloat(b.xyz);
-    light.keep = uintBitsToFloat(b.w);
-    light.e2 = uintBitsToFloat(c.xyz);
-    light.alias_entry = c.w;
-    light.power = uintBitsToFloat(d.xyz);
-    light.double_sided = d.w;
-    if ((FEATURES & FEATURE_TEXTURED_LIGHTS) != 0u) {
-        a = texelFetch(lights, texel + 4);
-        b = texelFetch(lights, texel + 5);
-        light.corner[0] = uintBitsToFloat(a.xy);
-        light.corner[1] = uintBitsToFloat(a.zw);
-        light.corner[2] = uintBitsToFloat(b.xy);
-        light.triangle = b.z;
-        light.textured = b.w;
-    }
-    return light;
-}
+LIGHTS(RECORDS)
 
 // The share of a textured light's factor that is emitted at a point of it: its texture, where the surface is there.
 vec3 emitted_share(Light light, vec2 b) {
     vec2 barycentric = (1.0 - b.x - b.y) * light.corner[0] + b.x * light.corner[1] + b.y * light.corner[2];
-    SurfaceMaterial material = factors_of(texelFetch(shading, int(light.triangle)).w & ~SHADING_FLAT);
+    SurfaceMaterial material = materials_at(texelFetch(shading_texels, int(light.triangle)).w & ~SHADING_FLAT);
     vec4 coordinates = (FEATURES & FEATURE_TEXTURES) != 0u ? texcoords_at(light.triangle, barycentric) : vec4(0.0);
     if ((FEATURES & FEATURE_ALPHA) != 0u) {
         if ((FEATURES & FEATURE_VERTEX_COLORS) != 0u) {
@@ -54,10 +25,10 @@ vec3 emitted_share(Light light, vec2 b) {
 Light choose_light(uvec4 bits, out uint index) {
     uint low;
     umulExtended(bits.x, params.light_count, index, low);
-    Light light = light_at(index);
+    Light light = lights_at(index);
     if (unit_floats(bits).y >= light.keep) {
         index = light.alias_entry;
-        light = light_at(index);
+        light = lights_at(index);
     }
     return light;
 }
@@ -71,7 +42,7 @@ float emitter_density(vec3 emission, bool double_sided) {
 // The same per solid angle, 1/sr, for a ray that meets the emitter `distance` away.
 float met_density(SurfaceMaterial material, Surface surface, vec3 direction, float distance) {
     // Without textures, as where the light is asked for.
-    vec3 emission = (FEATURES & FEATURE_TEXTURES) != 0u ? factors_of(surface.material).emission : material.emission;
+    vec3 emission = (FEATURES & FEATURE_TEXTURES) != 0u ? materials_at(surface.material).emission : material.emission;
     float cosine = max(1e-12, -dot(direction, surface.geometric));
     return emitter_density(emission, has(material, SURFACE_DOUBLE_SIDED)) * distance * distance / cosine;
 }
@@ -79,7 +50,7 @@ float met_density(SurfaceMaterial material, Surface surface, vec3 direction, flo
 // The density, 1/sr, in which directions to the environment are drawn.
 float environment_density(vec3 away) {
     uint pixel = environment_pixel(away);
-    vec3 radiance = texelFetch(environment, int(pixel)).rgb;
+    vec3 radiance = texelFetch(environment_texels, int(pixel)).rgb;
     return (radiance.r + radiance.g + radiance.b) * environment_area(pixel) / (3.0 * params.light_power);
 }
 
@@ -109,8 +80,8 @@ LightSample sample_light(uvec4 bits, vec2 v, vec3 position) {
         bool double_sided = light.double_sided != 0u;
         float cosine = -dot(s.direction, face_normal(light.e1, light.e2));
         cosine = double_sided ? abs(cosine) : max(0.0, cosine);
-        s.triangle = texelFetch(lights, int(index) * LIGHT_TEXELS + 5).z;
-        SurfaceMaterial material = factors_of(texelFetch(shading, int(s.triangle)).w & ~SHADING_FLAT);
+        s.triangle = lights_at(index).triangle;
+        SurfaceMaterial material = materials_at(texelFetch(shading_texels, int(s.triangle)).w & ~SHADING_FLAT);
         float inverse = cosine / (s.distance * s.distance);
         s.radiance = light.power * (inverse / (double_sided ? 2.0 * PI : PI));
         if ((FEATURES & FEATURE_TEXTURED_LIGHTS) != 0u && light.textured != 0u) s.radiance *= emitted_share(light, b);

@@ -9,7 +9,7 @@
 vec3 transmittance(uint memory, Surface surface, float distance) {
     uint medium = memory >> PATH_MEDIUM_SHIFT;
     if (!surface.front) {
-        SurfaceMaterial material = factors_of(surface.material);
+        SurfaceMaterial material = materials_at(surface.material);
         if (material.transmission > 0.0 && !has(material, SURFACE_THIN)) medium = surface.material;
     }
     return medium == PATH_NO_MEDIUM ? vec3(1.0) : exp(-distance * absorption_of(medium));

@@ -1,8 +1,8 @@
 // A resumable walk over the photons of the cells that a ball touches, segment of a row by segment. Reads the grid, the
 // cell starts and the sorted photons.
-layout(binding = BIND_COUNTER_TEXELS) uniform usamplerBuffer counters;
-layout(binding = BIND_SORTED_TEXELS) uniform usamplerBuffer sorted;
-layout(binding = BIND_CURSOR, scalar) buffer CursorBlock { Cursor cursors[]; };
+COUNTERS(TEXELS)
+SORTED(RECORDS)
+CURSORS(UPDATES)
 
 // Photons arriving at surfaces that turn away from the pixel's by more than acos(0.1) light another wall.
 const float NORMAL_AGREEMENT = 0.1;
@@ -33,8 +33,8 @@ Walk walk_segment(CellBox box, ivec3 cell) {
     walk.cell = cell;
     walk.last_x = box.level.dims.w == 0u ? box.high.x : min(box.high.x, cell.x | (HASH_RUN - 1));
     int start = int(cell_index(box.level, cell));
-    walk.first = texelFetch(counters, start).x;
-    walk.last = texelFetch(counters, start + walk.last_x - cell.x + 1).x;
+    walk.first = texelFetch(counters_texels, start).x;
+    walk.last = texelFetch(counters_texels, start + walk.last_x - cell.x + 1).x;
     return walk;
 }
 
@@ -54,12 +54,12 @@ bool accepted_side(uint packed, vec3 normal, bool both_sides) {
 }
 
 // Whether a pixel accepts the photon of a segment: within reach2 of its position, on its side. squared: the distance.
-bool accepts(GridLevel level, Walk walk, uvec4 photon, vec3 position, float reach2, vec3 normal, bool both_sides,
+bool accepts(GridLevel level, Walk walk, Photon photon, vec3 position, float reach2, vec3 normal, bool both_sides,
              out float squared) {
-    vec3 place = uintBitsToFloat(photon.xyz);
-    vec3 offset = place - position;
+    vec3 offset = photon.position - position;
     squared = dot(offset, offset);
-    return squared < reach2 && accepted_side(photon.w, normal, both_sides) && in_segment(level, walk, place);
+    return squared < reach2 && accepted_side(photon.normal, normal, both_sides) &&
+           in_segment(level, walk, photon.position);
 }
 
 // Loops over the segments of a box from `cursor` on while `steps` last and ROOM holds: cursor then says where to go on.

@@ -13,16 +13,16 @@ struct Surface {
 // Moves the hit into its triangle: the slack lets it lie outside by rounding, which is far in barycentrics of a sliver.
 Surface surface_at(inout Hit hit, vec3 direction) {
     int texel = int(hit.triangle) * 3;
-    vec4 v0 = texelFetch(triangles, texel);
-    vec4 edge1 = texelFetch(triangles, texel + 1);
-    vec4 edge2 = texelFetch(triangles, texel + 2);
+    vec4 v0 = texelFetch(triangles_texels, texel);
+    vec4 edge1 = texelFetch(triangles_texels, texel + 1);
+    vec4 edge2 = texelFetch(triangles_texels, texel + 2);
     vec3 e1 = edge1.xyz;
     vec3 e2 = edge2.xyz;
     vec2 inside = max(hit.barycentric, vec2(0.0));
     // Over the third edge: back along the shorter one of the others, mostly.
     inside -= max(0.0, inside.x + inside.y - 1.0) * vec2(edge1.w, edge2.w) / (edge1.w + edge2.w);
     hit.barycentric = max(inside, vec2(0.0));
-    uvec4 corner = texelFetch(shading, int(hit.triangle));
+    uvec4 corner = texelFetch(shading_texels, int(hit.triangle));
     Surface surface;
     // Barycentrics put the point within the rounding error of the plane, however long the ray was.
     surface.position = v0.xyz + hit.barycentric.x * e1 + hit.barycentric.y * e2;
@@ -56,7 +56,7 @@ vec3 leave(Surface surface, vec3 direction) {
 // w: the sign of the bitangent; 0 where there is no tangent to be had.
 vec4 tangent_at(Hit hit, vec3 front_normal, bool second_uv) {
     if ((FEATURES & FEATURE_TANGENTS) != 0u) {
-        uvec4 corner = texelFetch(tangents_of_triangles, int(hit.triangle));
+        uvec4 corner = texelFetch(tangents_texels, int(hit.triangle));
         if ((corner.w & 7u) == 7u) {
             vec3 t = (1.0 - hit.barycentric.x - hit.barycentric.y) * unpack_direction(corner.x) +
                      hit.barycentric.x * unpack_direction(corner.y) + hit.barycentric.y * unpack_direction(corner.z);
@@ -64,11 +64,11 @@ vec4 tangent_at(Hit hit, vec3 front_normal, bool second_uv) {
         }
     }
     int texel = int(hit.triangle) * 3;
-    vec3 e1 = texelFetch(triangles, texel + 1).xyz;
-    vec3 e2 = texelFetch(triangles, texel + 2).xyz;
-    vec4 uv0 = texelFetch(texcoords, texel);
-    vec4 d1 = texelFetch(texcoords, texel + 1) - uv0;
-    vec4 d2 = texelFetch(texcoords, texel + 2) - uv0;
+    vec3 e1 = texelFetch(triangles_texels, texel + 1).xyz;
+    vec3 e2 = texelFetch(triangles_texels, texel + 2).xyz;
+    vec4 uv0 = texelFetch(texcoords_texels, texel);
+    vec4 d1 = texelFetch(texcoords_texels, texel + 1) - uv0;
+    vec4 d2 = texelFetch(texcoords_texels, texel + 2) - uv0;
     vec2 du = second_uv ? vec2(d1.z, d2.z) : vec2(d1.x, d2.x);
     vec2 dv = second_uv ? vec2(d1.w, d2.w) : vec2(d1.y, d2.y);
     float area = du.x * dv.y - du.y * dv.x;
@@ -83,7 +83,7 @@ vec4 tangent_at(Hit hit, vec3 front_normal, bool second_uv) {
 // The normal `front_normal` bent by a normal texture; both on the front of the triangle.
 vec3 bent_normal(Hit hit, vec3 front_normal, uint reference, float scale, vec4 coordinates) {
     if (reference == 0u) return front_normal;
-    bool second_uv = (lookup_at(reference - 1u).flags & TEXTURE_SECOND_UV) != 0u;
+    bool second_uv = (textures_at(reference - 1u).flags & TEXTURE_SECOND_UV) != 0u;
     vec4 tangent = tangent_at(hit, front_normal, second_uv);
     vec3 t = tangent.xyz - front_normal * dot(front_normal, tangent.xyz);
     float length2 = dot(t, t);
@@ -97,7 +97,7 @@ vec3 bent_normal(Hit hit, vec3 front_normal, uint reference, float scale, vec4 c
 
 // The material at the hit. Bends the normals of the surface where it has normal textures.
 SurfaceMaterial material_at(Hit hit, vec3 direction, inout Surface surface) {
-    SurfaceMaterial material = factors_of(surface.material);
+    SurfaceMaterial material = materials_at(surface.material);
     if ((FEATURES & FEATURE_VERTEX_COLORS) != 0u) {
         vec4 color = vertex_color_at(hit.triangle, hit.barycentric);
         material.color *= color.rgb;

@@ -1,17 +1,9 @@
 // Texture lookups: images as words in one texel buffer. Reads textures and texels.
-layout(binding = BIND_TEXTURES) uniform usamplerBuffer textures;
-layout(binding = BIND_TEXELS) uniform usamplerBuffer texels;
+TEXTURES(RECORDS)
+IMAGES(TEXELS)
 
 vec3 srgb_to_linear(vec3 c) {
     return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThanEqual(c, vec3(0.04045)));
-}
-
-TextureLookup lookup_at(uint index) {
-    int texel = int(index) * 3;
-    uvec4 a = texelFetch(textures, texel);
-    uvec4 b = texelFetch(textures, texel + 1);
-    uvec4 c = texelFetch(textures, texel + 2);
-    return TextureLookup(a.x, a.y, a.z, a.w, uintBitsToFloat(b), uintBitsToFloat(c.xy), uint[2](0u, 0u));
 }
 
 // A coordinate within the image for any number: one period of the wrapping.
@@ -30,7 +22,7 @@ int wrap_index(int i, int size, uint mode) {
 vec4 texel_at(TextureLookup lookup, int x, int y) {
     x = wrap_index(x, int(lookup.width), lookup.flags & TEXTURE_WRAP_S);
     y = wrap_index(y, int(lookup.height), (lookup.flags & TEXTURE_WRAP_T) >> 2u);
-    vec4 c = unpackUnorm4x8(texelFetch(texels, int(lookup.first) + y * int(lookup.width) + x).x);
+    vec4 c = unpackUnorm4x8(texelFetch(images_texels, int(lookup.first) + y * int(lookup.width) + x).x);
     if ((lookup.flags & TEXTURE_SRGB) != 0u) c.rgb = srgb_to_linear(c.rgb);
     return c;
 }
@@ -39,7 +31,7 @@ vec4 texel_at(TextureLookup lookup, int x, int y) {
 // Bilinear between texel centres, or the nearest one; no mipmaps: pixels are averaged over many samples.
 vec4 texture_at(uint reference, vec4 coordinates) {
     if (reference == 0u) return vec4(1.0);
-    TextureLookup lookup = lookup_at(reference - 1u);
+    TextureLookup lookup = textures_at(reference - 1u);
     vec2 uv = (lookup.flags & TEXTURE_SECOND_UV) != 0u ? coordinates.zw : coordinates.xy;
     uv = vec2(dot(lookup.matrix.xy, uv), dot(lookup.matrix.zw, uv)) + lookup.offset;
     uv = vec2(wrap_coordinate(uv.x, lookup.flags & TEXTURE_WRAP_S),

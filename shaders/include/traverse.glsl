@@ -15,9 +15,9 @@ struct Hit {
 
 void intersect_triangle(uint index, vec3 origin, vec3 direction, inout Hit hit) {
     int texel = int(index) * 3;
-    vec3 v0 = texelFetch(triangles, texel).xyz;
-    vec4 e1 = texelFetch(triangles, texel + 1);
-    vec4 e2 = texelFetch(triangles, texel + 2);
+    vec3 v0 = texelFetch(triangles_texels, texel).xyz;
+    vec4 e1 = texelFetch(triangles_texels, texel + 1);
+    vec4 e2 = texelFetch(triangles_texels, texel + 2);
     vec3 p = cross(direction, e2.xyz);
     float inverse = 1.0 / dot(e1.xyz, p);
     vec3 s = origin - v0;
@@ -71,7 +71,7 @@ uint child_of(uint children, uint slot) {
 // First triangle of a leaf and the one past its last.
 uvec2 leaf_triangles(uint leaf) {
     uint children = (leaf & ~BVH_LEAF) >> 2u;
-    uvec4 words = texelFetch(nodes, int(children >> BVH_CHILDREN_SHIFT) * 4 + 3);
+    uvec4 words = texelFetch(nodes_texels, int(children >> BVH_CHILDREN_SHIFT) * 4 + 3);
     uvec2 leaves = (children & BVH_CHILDREN_MASK) == 0u ? words.xy : words.zw;
     uint place = leaves.y >> 8u * (leaf & 3u);
     uint first = leaves.x + (place & 15u);
@@ -156,9 +156,9 @@ void traverse(inout Traversal t, inout int steps, bool independent, bool running
             bool inner = t.node < BVH_LEAF && steps > 0;
             steps -= int(inner);
             int texel = inner ? int(t.node) * 4 : 0;
-            uvec4 a = texelFetch(nodes, texel);
-            uvec4 b = texelFetch(nodes, texel + 1);
-            uvec4 c = texelFetch(nodes, texel + 2);
+            uvec4 a = texelFetch(nodes_texels, texel);
+            uvec4 b = texelFetch(nodes_texels, texel + 1);
+            uvec4 c = texelFetch(nodes_texels, texel + 2);
             bvec3 negative = lessThan(t.inverse, vec3(0.0));
             vec3 cell = uintBitsToFloat(uvec3(a.w << 23u, a.w << 15u, a.w << 7u) & 0x7f800000u);
             vec3 scale = cell * t.inverse;

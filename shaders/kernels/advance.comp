@@ -4,7 +4,7 @@
 #include "include/kernel.glsl"
 #include "include/counters.glsl"
 
-layout(binding = BIND_COUNTERS, scalar) readonly buffer CounterBlock { uint counters[]; };
+COUNTERS(READS)
 
 void main() {
     if (blocked(0u) || invocation() != 0u) return;

@@ -27,9 +27,9 @@
 #include "include/hits.glsl"
 #include "include/pixels.glsl"
 
-layout(binding = BIND_SEARCHES, scalar) writeonly buffer SearchBlock { uint searches[]; };
-layout(binding = BIND_AOVS, scalar) buffer AovBlock { Aovs aovs[]; };
-layout(binding = BIND_LIGHT_RAYS, scalar) buffer LightRayBlock { LightRay light_rays[]; };
+SEARCHES(STORES)
+AOVS(UPDATES)
+LIGHT_RAYS(UPDATES)
 
 #define FIRST_BOUNCE_DIMENSION 2u  // stratified dimensions 0 and 1 place the ray in the pixel
 #define LOBE_DIMENSIONS 4096u      // of random numbers, beyond those of bounces: where in a lobe
@@ -243,7 +243,7 @@ void main() {
     hit_emission[pixel] = HitEmission(
         emission, (position.state & HIT_MASK) == HIT_UNFINISHED ? distance : distance * params.pixel_radius);
     // The knn pass, which has little to do after the first iterations, goes through these alone.
-    if ((position.state & HIT_DIFFUSE) != 0u && pixel_at(pixel).seeded == 0u) {
+    if ((position.state & HIT_DIFFUSE) != 0u && pixels_at(pixel).seeded == 0u) {
         uint place = atomicAdd(status.searches, 1u);
         if (place < pixel_count()) searches[place] = pixel;
     }

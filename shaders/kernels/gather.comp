@@ -23,7 +23,7 @@
 #include "include/pixels.glsl"
 #include "estimators/estimator.glsl"
 
-layout(binding = BIND_SORTED_FLUX_TEXELS) uniform usamplerBuffer sorted_flux;
+SORTED_FLUX(RECORDS)
 
 // The surface that the eye path ended on, as it met it.
 void glossy_hit(uint pixel, out Surface surface, out Bsdf bsdf, out vec3 outgoing) {
@@ -61,7 +61,7 @@ void main() {
     vec3 position = hit.position;
     vec3 normal = unpack_direction(hit_weight_at(pixel).normal);
     bool both_sides = (hit.state & HIT_MASK) == HIT_BOTH_SIDES;
-    float radius2 = pixel_at(pixel).radius2;
+    float radius2 = pixels_at(pixel).radius2;
     float inverse_radius = inversesqrt(radius2);
     vec3 tangent, bitangent;
     tangents(normal, tangent, bitangent);
@@ -88,7 +88,7 @@ void main() {
             // of it.
             uint bit = walk.first < walk.last ? 1u : 0u;
             do {
-                uvec4 photon = texelFetch(sorted, int(bit != 0u ? walk.first : 0u));
+                Photon photon = sorted_at(bit != 0u ? walk.first : 0u);
                 float squared;
                 run.y |= accepts(box.level, walk, photon, position, reach2, normal, both_sides, squared) ? bit : 0u;
                 walk.first += uint(bit != 0u);
@@ -105,31 +105,31 @@ void main() {
             bool ended = run.y == 0u;
             run = ended ? next : run;
             taken += uint(ended);
-            int index = int(run.x) + findLSB(run.y);
+            uint index = run.x + uint(findLSB(run.y));
             run.y &= run.y - 1u;
-            uvec4 photon = texelFetch(sorted, index);
-            uvec4 flux = texelFetch(sorted_flux, index);
-            vec3 offset = uintBitsToFloat(photon.xyz) - position;
+            Photon photon = sorted_at(index);
+            PhotonFlux flux = sorted_flux_at(index);
+            vec3 offset = photon.position - position;
             float squared = dot(offset, offset);
-            vec3 power = abs(uintBitsToFloat(flux.xyz));
-            vec3 towards = unpack_direction(flux.w);
+            vec3 power = abs(flux.power);
+            vec3 towards = unpack_direction(flux.direction);
             if ((FEATURES & FEATURE_SMOOTH) != 0u) {
                 // Photons arrive per area of the true surface, the BRDF is that of the shaded one.
-                vec3 geometric = unpack_direction(photon.w);
+                vec3 geometric = unpack_direction(photon.normal);
                 float cos_shading = dot(towards, normal);
                 power *= max(0.0, both_sides ? abs(cos_shading) : cos_shading) / max(0.01, dot(towards, geometric));
             }
             if ((FEATURES & FEATURE_GLOSS) != 0u) {
-                uint part = (flux.x & 0x80000000u) != 0u ? PART_ALL : PART_GATHERED;
+                uint part = (floatBitsToUint(flux.power.r) & 0x80000000u) != 0u ? PART_ALL : PART_GATHERED;
                 power *= PI * rough_bsdf(bsdf, surface, outgoing, towards, part);
             }
             bool inside = squared < radius2;
             float q = squared * inverse_radius * inverse_radius;
             add_corrected(sum.flux, sum.excess,
-                          inside ? power * kernel_weight(q, (flux.y & 0x80000000u) != 0u) : vec3(0.0));
+                          inside ? power * kernel_weight(q, (floatBitsToUint(flux.power.g) & 0x80000000u) != 0u) : vec3(0.0));
             sum.count += inside ? 1u : 0u;
             --steps;
-            record(pixel, Accepted(vec2(dot(offset, tangent), dot(offset, bitangent)), q, power, uint(index)), inside);
+            record(pixel, Accepted(vec2(dot(offset, tangent), dot(offset, bitangent)), q, power, index), inside);
         }
     }
     flush(pixel);

@@ -7,7 +7,7 @@
 
 #define MOST_GROUPS 65535u  // along an axis, of every device
 
-layout(binding = BIND_COUNTERS, scalar) buffer CounterBlock { uint counters[]; };
+COUNTERS(UPDATES)
 
 void main() {
     if (blocked(0u)) return;

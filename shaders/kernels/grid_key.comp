@@ -6,12 +6,12 @@
 #include "include/grid.glsl"
 #include "include/counters.glsl"
 
-layout(binding = BIND_PHOTON_TEXELS) uniform usamplerBuffer photons;
-layout(binding = BIND_COUNTER_TEXELS) uniform usamplerBuffer counts;
-layout(binding = BIND_PAIRS_A, scalar) writeonly buffer PairBlock { uvec2 pairs[]; };
-layout(binding = BIND_COUNTERS, scalar) buffer CounterBlock { uint counters[]; };
+PHOTONS(RECORDS)
+COUNTERS(TEXELS)
+PAIRS_A(STORES)
+COUNTERS(UPDATES)
 
-uint count_at(uint word) { return texelFetch(counts, int(word)).x; }
+uint count_at(uint word) { return texelFetch(counters_texels, int(word)).x; }
 
 void main() {
     uint path = invocation() * params.photons_per_lane;
@@ -31,9 +31,9 @@ void main() {
         path_end = ended ? next_end : path_end;
         path += uint(ended);
         if (i < path_end) {
-            vec3 position = uintBitsToFloat(texelFetch(photons, int(slot)).xyz);
+            vec3 position = photons_at(slot).position;
             uint cell = cell_index(level, clamp_cell(level, cell_of(level, position)));
-            pairs[first_pair + i] = uvec2(cell, slot);
+            pairs_a[first_pair + i] = uvec2(cell, slot);
             atomicAdd(counters[cell], 1u);
             ++i;
             ++slot;

@@ -17,8 +17,8 @@
 #include "include/pixels.glsl"
 #include "estimators/estimator.glsl"
 
-layout(binding = BIND_SEARCHES, scalar) readonly buffer SearchBlock { uint searches[]; };
-layout(binding = BIND_NEAREST, scalar) buffer NearestBlock { float nearest[]; };  // [knn x P]
+SEARCHES(READS)
+NEAREST(UPDATES)
 
 // Keeps the k smallest squared distances; returns the loop trips it took.
 int keep(inout Gathered kept, float squared, uint pixel) {
@@ -40,7 +40,7 @@ void main() {
     uint pixel = searches[invocation()];
 
     // The largest radius: bounded by the pixel's footprint, but not below a disc of k photons at mean density.
-    float cap = sqrt(pixel_at(pixel).radius2);
+    float cap = sqrt(pixels_at(pixel).radius2);
     Gathered kept;
     Cursor cursor = Cursor(uvec3(CURSOR_START), 0u);
     if (launch.round == 0u) {
@@ -78,7 +78,7 @@ void main() {
         float reach2 = kept.flux.z * kept.flux.z;
         FOR_SEGMENTS(box, cursor, walk, steps, true, {
             for (; walk.first < walk.last && steps > 0; ++walk.first, --steps) {
-                uvec4 photon = texelFetch(sorted, int(walk.first));
+                Photon photon = sorted_at(walk.first);
                 float squared;
                 if (accepts(box.level, walk, photon, position, reach2, normal, both_sides, squared)) {
                     steps -= keep(kept, squared, pixel);
@@ -97,7 +97,7 @@ void main() {
     }
     if (kept.count == params.knn) {
         // What was counted with the largest radius says nothing about this one.
-        PixelState state = pixel_at(pixel);
+        PixelState state = pixels_at(pixel);
         state.radius2 = max(kept.flux.x, RADIUS2_MIN);
         state.radius2_low = 0.0;
         state.seeded = 1u;

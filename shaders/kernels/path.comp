@@ -23,8 +23,8 @@
 #include "include/bounds.glsl"
 #include "include/camera.glsl"
 
-layout(binding = BIND_PATHS, scalar) buffer TraceBlock { TraceState traces[]; };
-layout(binding = BIND_IMAGE, scalar) writeonly buffer ImageBlock { vec3 image[]; };
+TRACES(UPDATES)
+IMAGE(STORES)
 
 #define FIRST_ROULETTE 4u      // bounce from which Russian roulette decides whether a path goes on
 #define FIRST_DIMENSION 16u    // of random numbers, beyond the stratified ones; three a bounce

@@ -20,10 +20,10 @@
 #include "include/light.glsl"
 #include "include/counters.glsl"
 
-layout(binding = BIND_PHOTONS, scalar) writeonly buffer PhotonBlock { Photon photons[]; };
-layout(binding = BIND_PHOTON_FLUX, scalar) writeonly buffer FluxBlock { PhotonFlux photon_flux[]; };
-layout(binding = BIND_PATHS, scalar) buffer PathBlock { PathState paths[]; };
-layout(binding = BIND_COUNTERS, scalar) writeonly buffer CounterBlock { uint counters[]; };
+PHOTONS(STORES)
+PHOTON_FLUX(STORES)
+PATHS(UPDATES)
+COUNTERS(STORES)
 
 // Under shading normals scattering is not symmetric: the factor |wi.ns wo.ng| / |wi.ng wo.ns| of Veach 1997, section
 // 5.3, keeps photons and eye paths consistent. `before`, `after`: directions of travel.

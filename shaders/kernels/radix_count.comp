@@ -7,9 +7,9 @@
 #include "include/grid.glsl"
 #include "include/counters.glsl"
 
-layout(binding = BIND_PAIRS_A, scalar) buffer PairBlockA { uvec2 pairs_a[]; };
-layout(binding = BIND_PAIRS_B, scalar) buffer PairBlockB { uvec2 pairs_b[]; };
-layout(binding = BIND_COUNTERS, scalar) buffer CounterBlock { uint counters[]; };
+PAIRS_A(UPDATES)
+PAIRS_B(UPDATES)
+COUNTERS(UPDATES)
 
 void main() {
     uint lane = invocation();

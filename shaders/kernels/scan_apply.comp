@@ -5,7 +5,7 @@
 #include "include/counters.glsl"
 #include "include/scan.glsl"
 
-layout(binding = BIND_COUNTERS, scalar) buffer CounterBlock { uint counters[]; };
+COUNTERS(UPDATES)
 
 void main() {
     uint block = invocation();

@@ -4,7 +4,7 @@
 #include "include/kernel.glsl"
 #include "include/counters.glsl"
 
-layout(binding = BIND_COUNTERS, scalar) buffer CounterBlock { uint counters[]; };
+COUNTERS(UPDATES)
 
 shared uint totals[gl_WorkGroupSize.x];
 

@@ -11,22 +11,13 @@
 #include "include/pixels.glsl"
 #include "estimators/estimator.glsl"
 
-layout(binding = BIND_FILM, scalar) writeonly buffer FilmBlock { Film film[]; };
-layout(binding = BIND_FILM_TEXELS) uniform usamplerBuffer films;
-
-Film film_at(uint pixel) {
-    Film f;
-    for (int c = 0; c < 3; ++c) {
-        f.sum[c] = uintBitsToFloat(texelFetch(films, int(pixel) * 6 + c).x);
-        f.low[c] = uintBitsToFloat(texelFetch(films, int(pixel) * 6 + 3 + c).x);
-    }
-    return f;
-}
+FILM(STORES)
+FILM(WORD_RECORDS)
 
 void main() {
     uint pixel = invocation_pixel();
     if (pixel >= pixel_count() || blocked(0u)) return;
-    PixelState state = pixel_at(pixel);
+    PixelState state = pixels_at(pixel);
     vec3 estimate = hit_emission_at(pixel).emission;
     bool diffuse = gathers(hit_position_at(pixel));
     Gathered sum = gathered_at(pixel);

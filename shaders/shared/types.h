@@ -20,6 +20,17 @@ using uint = std::uint32_t;
 #define VKCPPM_CONST const
 #endif
 
+// A struct whose members are the rows of FIELDS_<struct>, so that kernels that read it from texels decode it by them
+// (include/records.glsl):
+//   FIELD(type, name)
+//   ARRAY(features, type, name, count)      where the scene has none of the features it is not read
+//   OPTIONAL(features, absent, type, name)  likewise, and is `absent`
+#define MEMBER_FIELD(type, name) type name;
+#define MEMBER_ARRAY(features, type, name, count) type name[count];
+#define MEMBER_OPTIONAL(features, absent, type, name) type name;
+#define RECORD(Struct) struct Struct { FIELDS_##Struct(MEMBER_FIELD, MEMBER_ARRAY, MEMBER_OPTIONAL) };
+#define ANY_FEATURE 0xffffffffu
+
 // Specialization constants.
 #define SPEC_WORKGROUP 0  // invocations a work group
 #define SPEC_STACK 1      // entries of the traversal stack: the exact need of this scene's BVH
@@ -63,6 +74,10 @@ using uint = std::uint32_t;
 // Eye paths ask for lights where they may follow a rough lobe. Where light is split photons bring caustics alone, and
 // of those an eye path finds what it meets by delta lobes after it has followed a rough one.
 #define ASKS_FOR_LIGHTS(features) (((features) & FEATURE_ROUGH) != 0u && ((features) & FEATURE_SPLIT) == 0u)
+// Those that ask for parts of a SurfaceMaterial.
+#define FEATURES_OF_SCATTERING (FEATURE_REFLECTION | FEATURE_TRANSMISSION)
+#define FEATURES_OF_COATS (FEATURE_COAT | FEATURE_ALPHA)
+#define FEATURES_OF_LAYERS (FEATURE_CLEARCOAT | FEATURE_ALPHA | FEATURE_NORMAL_MAPS)
 #define FEATURE_PUNCTUAL_LIGHTS (FEATURE_POINT_LIGHTS | FEATURE_SPOT_LIGHTS | FEATURE_DIRECTIONAL_LIGHTS)
 
 #define MAX_RINGS 4
@@ -153,87 +168,93 @@ struct TriangleShading {
 
 // 144 bytes, read as 9 uvec4 texels, and of those only what the scene's features need. Factors as in glTF; a texture
 // multiplies them.
-struct SurfaceMaterial {
-    vec3 color;            // base colour
-    uint flags;            // SURFACE_*
-    vec3 emission;         // radiance, W m^-2 sr^-1
-    float specular;
-    float metallic;
-    float roughness;       // alpha = roughness^2
-    float transmission;
-    float ior;             // at 587.6 nm; very large for an index of infinity
-    vec3 specular_color;
-    float opacity;
-    vec3 absorption;       // of the volume, 1 / frame unit
-    float cauchy;          // B of n(l) = A + B / l^2, micrometres squared
-    float clearcoat;
-    float clearcoat_roughness;
-    float alpha_cutoff;
-    float normal_scale;
-    uint texture[TEXTURE_COUNT];  // 1 + index of a TextureLookup; 0: none
-    float clearcoat_normal_scale;
-    uint unused;
-};
+#define FIELDS_SurfaceMaterial(FIELD, ARRAY, OPTIONAL) \
+    FIELD(vec3, color)      /* base colour */ \
+    FIELD(uint, flags)      /* SURFACE_* */ \
+    FIELD(vec3, emission)   /* radiance, W m^-2 sr^-1 */ \
+    FIELD(float, specular) \
+    OPTIONAL(FEATURES_OF_SCATTERING, 0.0f, float, metallic) \
+    OPTIONAL(FEATURES_OF_SCATTERING, 0.0f, float, roughness)  /* alpha = roughness^2 */ \
+    OPTIONAL(FEATURES_OF_SCATTERING, 0.0f, float, transmission) \
+    OPTIONAL(FEATURES_OF_SCATTERING, 1.0f, float, ior)  /* at 587.6 nm; very large for an index of infinity */ \
+    OPTIONAL(FEATURES_OF_COATS, vec3(1.0f), vec3, specular_color) \
+    OPTIONAL(FEATURES_OF_COATS, 1.0f, float, opacity) \
+    OPTIONAL(FEATURE_VOLUME, vec3(0.0f), vec3, absorption)  /* of the volume, 1 / frame unit */ \
+    OPTIONAL(FEATURE_DISPERSION, 0.0f, float, cauchy)  /* B of n(l) = A + B / l^2, micrometres squared */ \
+    OPTIONAL(FEATURES_OF_LAYERS, 0.0f, float, clearcoat) \
+    OPTIONAL(FEATURES_OF_LAYERS, 0.0f, float, clearcoat_roughness) \
+    OPTIONAL(FEATURES_OF_LAYERS, 0.0f, float, alpha_cutoff) \
+    OPTIONAL(FEATURES_OF_LAYERS, 1.0f, float, normal_scale) \
+    ARRAY(FEATURE_TEXTURES, uint, texture, TEXTURE_COUNT)  /* 1 + index of a TextureLookup; 0: none */ \
+    OPTIONAL(FEATURE_TEXTURES, 1.0f, float, clearcoat_normal_scale) \
+    FIELD(uint, unused)
+RECORD(SurfaceMaterial)
 
 // 48 bytes, read as 3 uvec4 texels. uv' = (matrix.xy . uv, matrix.zw . uv) + offset.
-struct TextureLookup {
-    uint first;            // texel of its image
-    uint width;
-    uint height;
-    uint flags;            // TEXTURE_*
-    vec4 matrix;           // rows
-    vec2 offset;
-    uint unused[2];
-};
+#define FIELDS_TextureLookup(FIELD, ARRAY, OPTIONAL) \
+    FIELD(uint, first)                   /* texel of its image */ \
+    FIELD(uint, width) \
+    FIELD(uint, height) \
+    FIELD(uint, flags)                   /* TEXTURE_* */ \
+    FIELD(vec4, matrix)                  /* rows */ \
+    FIELD(vec2, offset) \
+    ARRAY(ANY_FEATURE, uint, unused, 2)
+RECORD(TextureLookup)
 
 // One entry of the alias table of lights; 96 bytes, read as 6 uvec4 texels, of which photons read two for textured
 // lights only. A path that starts here carries `power`: flux of the light / its probability.
-struct Light {
-    vec3 position;     // triangle: v0; point, spot: position
-    uint kind;         // LIGHT_*
-    vec3 e1;           // triangle: edge; spot, directional: unit direction of travel
-    float keep;        // alias table: probability to keep this entry
-    vec3 e2;           // triangle: edge; spot: (1 - cos inner, 1 - cos outer, -)
-    uint alias_entry;  // alias table: the other entry
-    vec3 power;        // W (frame-scaled); directional, environment: into the scene; environment: the mean channel
-                       // alone, times the colour of the pixel drawn and entry_area over its mean in the pixel
-    uint double_sided; // triangle
-    vec2 corner[3];    // textured: barycentrics of its corners in the triangle that it is a part of
-    uint triangle;     // triangle: into the leaf-ordered ones; textured: that which it is a part of
-    uint textured;     // its radiance or alpha comes from textures
-};
+#define FIELDS_Light(FIELD, ARRAY, OPTIONAL) \
+    FIELD(vec3, position)      /* triangle: v0; point, spot: position */ \
+    FIELD(uint, kind)          /* LIGHT_* */ \
+    FIELD(vec3, e1)            /* triangle: edge; spot, directional: unit direction of travel */ \
+    FIELD(float, keep)         /* alias table: probability to keep this entry */ \
+    FIELD(vec3, e2)            /* triangle: edge; spot: (1 - cos inner, 1 - cos outer, -) */ \
+    FIELD(uint, alias_entry)   /* alias table: the other entry */ \
+    /* W (frame-scaled); directional, environment: into the scene; environment: the mean channel alone, times \
+       the colour of the pixel drawn and entry_area over its mean in the pixel */ \
+    FIELD(vec3, power) \
+    FIELD(uint, double_sided)  /* triangle */ \
+    /* textured: barycentrics of its corners in the triangle that it is a part of */ \
+    ARRAY(FEATURE_TEXTURED_LIGHTS, vec2, corner, 3) \
+    /* triangle: into the leaf-ordered ones; textured: that which it is a part of */ \
+    OPTIONAL(FEATURE_AREA_LIGHTS, 0u, uint, triangle) \
+    OPTIONAL(FEATURE_TEXTURED_LIGHTS, 0u, uint, textured)  /* its radiance or alpha comes from textures */
+RECORD(Light)
 
 // A stored photon: what the distance test reads (16 bytes) and what an accepted photon adds (16 bytes).
-struct Photon {
-    vec3 position;
-    uint normal;       // geometric, on the side it arrived at, octahedral snorm16x2
-};
-struct PhotonFlux {
-    vec3 power;        // W (frame-scaled), not yet divided by the number of emitted paths; red with its sign bit set:
-                       // the photon comes straight from a punctual light by way of mirrors and smooth glass alone,
-                       // and at least one: no eye path finds its light. Green with its sign bit set, where light is
-                       // split: its first surface that is not smooth
-    uint direction;    // unit, towards where it came from, octahedral snorm16x2
-};
+#define FIELDS_Photon(FIELD, ARRAY, OPTIONAL) \
+    FIELD(vec3, position) \
+    FIELD(uint, normal)    /* geometric, on the side it arrived at, octahedral snorm16x2 */
+RECORD(Photon)
+#define FIELDS_PhotonFlux(FIELD, ARRAY, OPTIONAL) \
+    /* W (frame-scaled), not yet divided by the number of emitted paths; red with its sign bit set: the photon \
+       comes straight from a punctual light by way of mirrors and smooth glass alone, and at least one: no eye \
+       path finds its light. Green with its sign bit set, where light is split: its first surface that is not \
+       smooth */ \
+    FIELD(vec3, power) \
+    FIELD(uint, direction)  /* unit, towards where it came from, octahedral snorm16x2 */
+RECORD(PhotonFlux)
 
 // Where an eye path ended. 3 records of 16 bytes, one array each, and a fourth in glossy scenes.
-struct HitPosition {
-    vec3 position;     // scene frame; while the path is unfinished and goes on: origin of the next ray
-    uint state;        // HIT_* | diffuse albedo, 10 bits a channel, << 2: what the F-tests weigh photons by
-};
-struct HitWeight {
-    vec3 weight;       // path throughput * albedo / pi (glossy scenes: / pi alone); unfinished: path throughput
-    uint normal;       // shading normal on the eye's side, octahedral; unfinished: bounces | PATH_*
-};
-struct HitEmission {
-    vec3 emission;     // throughput * radiance of emitters met on the way
-    float footprint;   // radius of the pixel's footprint at the hit, scene frame; unfinished: length so far
-};
-struct HitSurface {
-    uint triangle;     // what the BSDF is made from again
-    vec2 barycentric;
-    uint outgoing;     // unit, towards the eye, octahedral snorm16x2
-};
+#define FIELDS_HitPosition(FIELD, ARRAY, OPTIONAL) \
+    FIELD(vec3, position)  /* scene frame; while the path is unfinished and goes on: origin of the next ray */ \
+    FIELD(uint, state)     /* HIT_* | diffuse albedo, 10 bits a channel, << 2: what the F-tests weigh photons by */
+RECORD(HitPosition)
+#define FIELDS_HitWeight(FIELD, ARRAY, OPTIONAL) \
+    /* path throughput * albedo / pi (glossy scenes: / pi alone); unfinished: path throughput */ \
+    FIELD(vec3, weight) \
+    FIELD(uint, normal)  /* shading normal on the eye's side, octahedral; unfinished: bounces | PATH_* */
+RECORD(HitWeight)
+#define FIELDS_HitEmission(FIELD, ARRAY, OPTIONAL) \
+    FIELD(vec3, emission)    /* throughput * radiance of emitters met on the way */ \
+    /* radius of the pixel's footprint at the hit, scene frame; unfinished: length so far */ \
+    FIELD(float, footprint)
+RECORD(HitEmission)
+#define FIELDS_HitSurface(FIELD, ARRAY, OPTIONAL) \
+    FIELD(uint, triangle)     /* what the BSDF is made from again */ \
+    FIELD(vec2, barycentric) \
+    FIELD(uint, outgoing)     /* unit, towards the eye, octahedral snorm16x2 */
+RECORD(HitSurface)
 #define HIT_NONE 0u        // nothing to gather: the path left the scene or was absorbed
 #define HIT_DIFFUSE 1u     // gathers photons that arrive on the side it is seen from
 #define HIT_UNFINISHED 2u  // the step budget ran out: the next round goes on
@@ -265,30 +286,35 @@ struct LightRay {
 
 // Sum of one pass of the gather over a pixel's disc, read as 2 texels. While an eye path is unfinished: the rest of
 // what it remembers.
-struct Gathered {
-    vec3 flux;         // sum of photon power * correction, without the hit's weight; unfinished: direction of the ray
-    uint count;        // accepted photons; unfinished: the state that the path ends in, HIT_UNFINISHED: it goes on
-    vec3 excess;       // what rounding has left too much in flux (Kahan 1965); unfinished: the density with which rough
-                       // lobes gave the direction, the length since the last vertex, 0
-    uint unused;
-};
+#define FIELDS_Gathered(FIELD, ARRAY, OPTIONAL) \
+    /* sum of photon power * correction, without the hit's weight; unfinished: direction of the ray */ \
+    FIELD(vec3, flux) \
+    /* accepted photons; unfinished: the state that the path ends in, HIT_UNFINISHED: it goes on */ \
+    FIELD(uint, count) \
+    /* what rounding has left too much in flux (Kahan 1965); unfinished: the density with which rough lobes \
+       gave the direction, the length since the last vertex, 0 */ \
+    FIELD(vec3, excess) \
+    FIELD(uint, unused)
+RECORD(Gathered)
 
 // What a pixel remembers between iterations, read as 3 texels.
-struct PixelState {
-    float radius2;     // R^2 in force, 0 before the pixel first saw a diffuse surface
-    uint seeded;       // 1 once the k-th nearest photon gave the radius; 0: radius2 is the cap
-    float count;       // sppm: N of Hachisuka and Jensen; sppm-kz, appm: iterations since the radius was seeded;
-                       // ftest: iterations since the last rejection
-    uint total;        // photons accepted since the last reset of the tally; stays at its largest value
-    float batch;       // B, photons to see before a test
-    uint rejections;
-    uint photons;      // accepted in all; stays at its largest value
-    uint seen;         // iterations in which the pixel saw a diffuse surface
-    float statistic;   // of the last test of the whole disc, over its threshold
-    float radius2_low; // radius2 + radius2_low: R^2 where a schedule shrinks it by little in every iteration
-    float count_low;   // count + count_low: the count, beyond what a float holds
-    uint unused;
-};
+#define FIELDS_PixelState(FIELD, ARRAY, OPTIONAL) \
+    FIELD(float, radius2)      /* R^2 in force, 0 before the pixel first saw a diffuse surface */ \
+    FIELD(uint, seeded)        /* 1 once the k-th nearest photon gave the radius; 0: radius2 is the cap */ \
+    /* sppm: N of Hachisuka and Jensen; sppm-kz, appm: iterations since the radius was seeded; ftest: \
+       iterations since the last rejection */ \
+    FIELD(float, count) \
+    FIELD(uint, total)         /* photons accepted since the last reset of the tally; stays at its largest value */ \
+    FIELD(float, batch)        /* B, photons to see before a test */ \
+    FIELD(uint, rejections) \
+    FIELD(uint, photons)       /* accepted in all; stays at its largest value */ \
+    FIELD(uint, seen)          /* iterations in which the pixel saw a diffuse surface */ \
+    FIELD(float, statistic)    /* of the last test of the whole disc, over its threshold */ \
+    /* radius2 + radius2_low: R^2 where a schedule shrinks it by little in every iteration */ \
+    FIELD(float, radius2_low) \
+    FIELD(float, count_low)    /* count + count_low: the count, beyond what a float holds */ \
+    FIELD(uint, unused)
+RECORD(PixelState)
 
 // What a picture's first surfaces are like: sums over the iterations in which the pixel met one.
 // Each in two floats, as Film.
@@ -303,10 +329,10 @@ struct Aovs {
 };
 
 // Sum of radiance in two floats: sum + low is the estimate times the iterations.
-struct Film {
-    vec3 sum;
-    vec3 low;
-};
+#define FIELDS_Film(FIELD, ARRAY, OPTIONAL) \
+    FIELD(vec3, sum) \
+    FIELD(vec3, low)
+RECORD(Film)
 
 // A light path in flight at the end of a round, one a lane.
 struct PathState {

@@ -18,7 +18,7 @@ layout(binding = PROBE_OUTPUT, scalar) writeonly buffer OutputBlock { BsdfOutput
 void main() {
     uint i = invocation();
     if (i >= launch.count) return;
-    SurfaceMaterial material = factors_of(view.material);
+    SurfaceMaterial material = materials_at(view.material);
     Surface surface = Surface(vec3(0.0), view.geometric, view.normal, view.clearcoat_normal, 0.0, view.front != 0u,
                               view.material);
     Bsdf bsdf = bsdf_of(material, material.ior, surface.front);

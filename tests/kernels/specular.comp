@@ -17,7 +17,7 @@ void main() {
     uint i = invocation();
     if (i >= launch.count) return;
     ScatterInput s = inputs[i];
-    SurfaceMaterial material = factors_of(s.material);
+    SurfaceMaterial material = materials_at(s.material);
     Surface surface = Surface(vec3(0.0), s.geometric, s.normal, s.normal, 0.0, s.front != 0u, s.material);
     Bsdf bsdf = bsdf_of(material, material.ior, surface.front);
     float cosine = min(1.0, -dot(s.direction, s.normal));

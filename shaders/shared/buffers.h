@@ -1,0 +1,86 @@
+// Every buffer of the one descriptor set, a row each. Allocation, the memory of --stats, checkpoints, hashes,
+// descriptors and the declarations of the kernels follow from the rows.
+//
+// ROW(number, name, Element, per, entries, access, life, hashed)
+//   number   of its binding; where kernels read it as texels, TEXELS_BINDING + number is that of the view
+//   name     of the array in kernels, Binding::name on the host
+//   Element  what it is an array of: a struct of types.h, or uint, float, uvec2, vec3, vec4
+//   per      what it has entries for, as --stats counts memory (Per of host/render/buffers.h)
+//   entries  how many for each (Entries of host/render/buffers.h)
+//   access   uniform      as a uniform block
+//            storage      as a storage buffer
+//            uint_texels, float_texels, word_texels: as texels of four integers, four floats, one integer alone: data
+//                         that no kernel writes
+//            records      written as a storage buffer, read as texels of four integers: Element is 16 bytes or more
+//            words        the same, of one integer
+//   life     scratch      made anew by every iteration, or never written by one
+//            carried      an iteration leaves it to the next: checkpoints hold it
+//   hashed   never, eye, gather, update: after that pass; from_knn: after that and those behind it; apart: by rules of
+//            its own in host/render/integrator_state.cpp. In the order of the rows.
+//
+// Software Vulkan reads a texel of four words for the lanes of a SIMD group (subgroup) at once, and every word of a
+// storage buffer lane by lane. What an invocation has stored it does not read as texels in the same launch.
+#ifdef __cplusplus
+#pragma once
+#endif
+
+// clang-format off
+// Of a render.
+#define PARAMS(ROW)            ROW(0, params, Params, rest, one, uniform, scratch, never)
+#define STATUS(ROW)            ROW(1, status, Status, rest, one, storage, scratch, never)
+#define GRID(ROW)              ROW(2, grid, Grid, rest, one, storage, carried, apart)
+// Of the scene: the members of that name of FlatScene (host/flat/flatten.h).
+#define NODES(ROW)             ROW(3, nodes, BvhNode, node, uploaded, uint_texels, scratch, never)
+#define TRIANGLES(ROW)         ROW(4, triangles, TriangleGeometry, triangle, uploaded, float_texels, scratch, never)
+#define SHADING(ROW)           ROW(5, shading, TriangleShading, triangle, uploaded, uint_texels, scratch, never)
+#define TEXCOORDS(ROW)         ROW(6, texcoords, vec4, triangle, uploaded, float_texels, scratch, never)
+#define VERTEX_COLORS(ROW)     ROW(7, vertex_colors, uvec4, triangle, uploaded, uint_texels, scratch, never)
+#define TANGENTS(ROW)          ROW(8, tangents, uvec4, triangle, uploaded, uint_texels, scratch, never)
+#define MATERIALS(ROW)         ROW(9, materials, SurfaceMaterial, material, uploaded, uint_texels, scratch, never)
+#define TEXTURES(ROW)          ROW(10, textures, TextureLookup, rest, uploaded, uint_texels, scratch, never)
+#define IMAGES(ROW)            ROW(11, images, uint, texel, uploaded, word_texels, scratch, never)
+#define LIGHTS(ROW)            ROW(12, lights, Light, light, uploaded, uint_texels, scratch, never)
+#define ENVIRONMENT(ROW)       ROW(13, environment, vec4, sky_pixel, uploaded, float_texels, scratch, never)
+#define ENVIRONMENT_ALIAS(ROW) ROW(14, environment_alias, uvec2, sky_pixel, uploaded, word_texels, scratch, never)
+// Of pixels.
+#define HIT_POSITION(ROW)      ROW(15, hit_position, HitPosition, pixel, one, records, scratch, eye)
+#define HIT_WEIGHT(ROW)        ROW(16, hit_weight, HitWeight, pixel, one, records, scratch, eye)
+#define HIT_EMISSION(ROW)      ROW(17, hit_emission, HitEmission, pixel, one, records, scratch, eye)
+#define AOVS(ROW)              ROW(18, aovs, Aovs, pixel, where_aovs, storage, carried, eye)
+#define HIT_SURFACE(ROW)       ROW(19, hit_surface, HitSurface, pixel, where_glossy, records, scratch, apart)
+#define LIGHT_RAYS(ROW)        ROW(20, light_rays, LightRay, pixel, where_asking, storage, scratch, never)
+#define SEARCHES(ROW)          ROW(21, searches, uint, pixel, one, storage, scratch, never)
+#define CURSORS(ROW)           ROW(22, cursors, Cursor, pixel, one, storage, scratch, never)
+#define NEAREST(ROW)           ROW(23, nearest, float, pixel, nearest, storage, scratch, never)
+#define GATHERED(ROW)          ROW(24, gathered, Gathered, pixel, one, records, scratch, gather)
+#define FILM(ROW)              ROW(25, film, Film, pixel, one, words, carried, update)
+#define PIXELS(ROW)            ROW(26, pixels, PixelState, pixel, one, records, carried, from_knn)
+#define TALLY(ROW)             ROW(27, tally, uint, pixel, tallies, words, carried, from_knn)
+#define MOMENTS(ROW)           ROW(28, moments, float, pixel, moments, words, carried, from_knn)
+#define IMAGE(ROW)             ROW(29, image, vec3, pixel, one, storage, scratch, never)
+#define TRACES(ROW)            ROW(30, traces, TraceState, pixel, one, storage, scratch, never)
+// Of photons: [lanes x capacity] slots, and sorted once a level of the grid.
+#define PATHS(ROW)             ROW(31, paths, PathState, photon_lane, one, storage, scratch, never)
+#define PHOTONS(ROW)           ROW(32, photons, Photon, photon_slot, one, records, scratch, apart)
+#define PHOTON_FLUX(ROW)       ROW(33, photon_flux, PhotonFlux, photon_slot, one, records, scratch, apart)
+#define SORTED(ROW)            ROW(34, sorted, Photon, photon_slot, levels, records, scratch, apart)
+#define SORTED_FLUX(ROW)       ROW(35, sorted_flux, PhotonFlux, photon_slot, levels, records, scratch, apart)
+#define PAIRS_A(ROW)           ROW(36, pairs_a, uvec2, photon_slot, levels, storage, scratch, never)
+#define PAIRS_B(ROW)           ROW(37, pairs_b, uvec2, photon_slot, levels, storage, scratch, never)
+#define COUNTERS(ROW)          ROW(38, counters, uint, counter, one, words, scratch, apart)
+// [rings x F_QUANTILES] thresholds of the F-tests.
+#define QUANTILES(ROW)         ROW(39, quantiles, float, rest, uploaded, storage, scratch, never)
+
+#define SCENE_BUFFERS(ROW)                                                                               \
+    NODES(ROW) TRIANGLES(ROW) SHADING(ROW) TEXCOORDS(ROW) VERTEX_COLORS(ROW) TANGENTS(ROW) MATERIALS(ROW) \
+    TEXTURES(ROW) IMAGES(ROW) LIGHTS(ROW) ENVIRONMENT(ROW) ENVIRONMENT_ALIAS(ROW)
+#define BUFFERS(ROW)                                                                                      \
+    PARAMS(ROW) STATUS(ROW) GRID(ROW) SCENE_BUFFERS(ROW)                                                  \
+    HIT_POSITION(ROW) HIT_WEIGHT(ROW) HIT_EMISSION(ROW) AOVS(ROW) HIT_SURFACE(ROW) LIGHT_RAYS(ROW)        \
+    SEARCHES(ROW) CURSORS(ROW) NEAREST(ROW) GATHERED(ROW) FILM(ROW) PIXELS(ROW) TALLY(ROW) MOMENTS(ROW)   \
+    IMAGE(ROW) TRACES(ROW)                                                                                \
+    PATHS(ROW) PHOTONS(ROW) PHOTON_FLUX(ROW) SORTED(ROW) SORTED_FLUX(ROW) PAIRS_A(ROW) PAIRS_B(ROW)       \
+    COUNTERS(ROW) QUANTILES(ROW)
+// clang-format on
+
+#define TEXELS_BINDING 64  // beyond every row
