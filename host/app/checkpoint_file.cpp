@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view magic = "vkcppmck";
-constexpr std::uint64_t format = 3;  // of the header and of Integrator::save(): raised where either changes
+constexpr std::uint64_t format = 4;  // of the header and of Integrator::save(): raised where either changes
 constexpr std::uint64_t fixed_bytes = magic.size() + 3 * sizeof(std::uint64_t);
 constexpr std::uint64_t most_header_bytes = 256u << 20;     // a million points of a curve
 constexpr std::uint64_t most_state_bytes_per_pixel = 1024;  // no estimator keeps so much

@@ -191,7 +191,7 @@ FlatScene flatten(const Scene& scene) {
         flat.materials.push_back(surface_of(scene.materials[i], traits[i], flat.frame.scale, textures));
     }
     flat.textures = textures.lookups();
-    flat.texels = textures.texels();
+    flat.images = textures.texels();
     add_triangles(scene, traits, flat);
     add_lights(scene, flat);
     flat.features = features_of(scene, traits, flat);

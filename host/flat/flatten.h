@@ -26,7 +26,7 @@ struct FlatScene {
     std::vector<glm::uvec4> tangents;       // [triangles] where there are normal maps
     std::vector<gpu::SurfaceMaterial> materials;
     std::vector<gpu::TextureLookup> textures;
-    std::vector<std::uint32_t> texels;   // of all images, a word each
+    std::vector<std::uint32_t> images;   // texels of all images, a word each
     std::vector<gpu::Light> lights;      // alias table; empty where nothing emits
     double light_power = 0.0;            // of all, mean channel, W (frame-scaled): about, where lights have textures
     Extent environment_size;             // of the map, cut where its pixels were coarse

@@ -14,8 +14,6 @@
 #include "flat/features.h"
 #include "render/grid.h"
 #include "render/kernels.h"
-#include "render/memory.h"
-#include "shared/bindings.h"
 
 namespace vkcppm {
 namespace {
@@ -48,25 +46,65 @@ void set_test(gpu::Params& params, const EstimatorRow& estimator, const Settings
 
 }  // namespace
 
-Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings,
+Integrator::Integrator(const SceneOnDevice& on_device, const Camera& camera, const Settings& settings,
                        std::vector<KernelForm> forms)
-    : device_(device),
-      bindings_(device),
-      commands_(device, bindings_, timed_launches),
-      buffers_(device, bindings_, scene) {
-    if (forms.empty()) forms = forms_for(device.info());
+    : device_(on_device.device()),
+      bindings_(device_),
+      commands_(device_, bindings_, timed_launches),
+      buffers_(device_, bindings_) {
+    if (forms.empty()) forms = forms_for(device_.info());
+    const FlatScene& scene = on_device.flat();
     const EstimatorRow& estimator = find_estimator(settings.estimator);
     const std::uint32_t features = bits_of(scene.features) | bits_of(features_of(settings));
     scale_ = scene.frame.scale;
     pixels_ = settings.size->pixels();
     for (const Pass pass : {Pass::eye, Pass::photon, Pass::knn, Pass::gather}) rounds_[pass] = 1;
-
-    params_ = scene_params(device, scene, camera, settings, settings.caustics.has_value());
+    params_ = scene_params(device_, scene, camera, settings, settings.caustics.has_value());
     set_test(params_, estimator, settings);
+    set_params(scene, settings, forms.front().group);
+
+    counts_.pixels = pixels_;
+    counts_.photon_lanes = params_.photon_lanes;
+    counts_.counters = std::uint64_t(params_.cells) + 1 + 2 * std::uint64_t(params_.photons) + 1 +
+                       (std::uint64_t(params_.sort_lanes) << digit_bits_) + params_.scan_blocks;
+    counts_.tallies = tally_rows(estimator, settings.rings, settings.sectors);
+    counts_.moments = moment_rows(estimator, settings.rings, settings.sectors);
+    counts_.nearest = settings.knn;
+    counts_.aovs = settings.aovs;
+    counts_.glossy = (features & FEATURE_GLOSS) != 0;
+    counts_.asking = ASKS_FOR_LIGHTS(features);
+    on_device.lend(buffers_);
+    buffers_.allocate(
+        counts_, [](const BufferRow& row) { return row.entries != Entries::uploaded && row.per != Per::photon_slot; });
+    buffers_.upload(Binding::quantiles,
+                    f_thresholds(estimator, settings.rings, settings.sectors, settings.significance));
+    allocate_photons();
+
+    gpu::PixelState pixel{};
+    pixel.batch = float(settings.knn);  // B_1 = k_NN
+    buffer(Binding::pixels).upload(std::vector<gpu::PixelState>(pixels_, pixel));
+    specialization_ = scene_specialization(scene, features);
+    specialization_.merge(Specialization{{SPEC_ESTIMATOR, estimator.id},
+                                         {SPEC_RINGS, settings.rings},
+                                         {SPEC_SECTORS, settings.sectors},
+                                         {SPEC_DIGIT_BITS, digit_bits_},
+                                         {SPEC_LEVELS, params_.grid_levels}});
+    std::vector<std::string> names;
+    for (const KernelModule& module : kernel_modules()) {
+        if (module.name == "path") continue;  // the path tracer's
+        names.emplace_back(module.name);
+        choices_.emplace(names.back(), forms_of(names.back(), forms));
+        passes_.push_back({names.back(), 0, 0.0});
+    }
+    compile(names);
+}
+
+/// Photons, starting radii, the estimator's parameters and the grid's sizes. group: invocations of a work group.
+void Integrator::set_params(const FlatScene& scene, const Settings& settings, std::uint32_t group) {
     params_.photons = scene.lights.empty() ? 0 : settings.photons;
     params_.inverse_paths = params_.photons > 0 ? 1.0f / float(params_.photons) : 0.0f;
     params_.flux_unit = scene.light_power > 0.0 ? float(std::exp2(-std::floor(std::log2(scene.light_power)))) : 1.0f;
-    const std::uint32_t per_lane = std::clamp(params_.photons / device.busy_lanes(), 1u, most_photons_per_lane);
+    const std::uint32_t per_lane = std::clamp(params_.photons / device_.busy_lanes(), 1u, most_photons_per_lane);
     params_.photons_per_lane = per_lane;
     // Whole work groups: a SIMD group takes the share of all its lanes.
     params_.photon_lanes = (params_.photons / per_lane / workgroup + 1) * workgroup;
@@ -86,81 +124,43 @@ Integrator::Integrator(Device& device, const FlatScene& scene, const Camera& cam
     params_.most_levels = std::uint32_t(std::clamp<std::uint64_t>(
         sorted_bytes / (sizeof(gpu::Photon) * usual_photons * settings.photons), 1, GRID_LEVELS));
     params_.sort_lanes = std::bit_ceil(std::clamp(settings.photons / 128, 64u, 4096u));
-    params_.scan_blocks = std::clamp(params_.cells / 256, forms.front().group, 4096u);
+    params_.scan_blocks = std::clamp(params_.cells / 256, group, 4096u);
     const auto key_bits = std::uint32_t(std::countr_zero(params_.cells));
     digits_ = (key_bits + 7) / 8;
     digit_bits_ = (key_bits + digits_ - 1) / digits_;
+}
 
-    using Kind = Buffer::Kind;
-    buffers_.allocate(BIND_PARAMS, "parameters", sizeof(gpu::Params), Kind::uniform);
-    buffers_.allocate(BIND_STATUS, "status", sizeof(gpu::Status), Kind::storage);
-    buffers_.allocate(BIND_GRID, "grid", sizeof(gpu::Grid), Kind::storage);
-    buffers_.allocate(BIND_HIT_POSITION, "hit positions", pixels_ * sizeof(gpu::HitPosition), Kind::uint_texels);
-    buffers_.allocate(BIND_HIT_WEIGHT, "hit weights", pixels_ * sizeof(gpu::HitWeight), Kind::uint_texels);
-    buffers_.allocate(BIND_HIT_EMISSION, "hit emission", pixels_ * sizeof(gpu::HitEmission), Kind::uint_texels);
-    buffers_.allocate(BIND_GATHERED, "gathered", pixels_ * sizeof(gpu::Gathered), Kind::uint_texels);
-    buffers_.allocate(BIND_PIXELS, "pixels", pixels_ * sizeof(gpu::PixelState), Kind::uint_texels);
-    const std::uint64_t tallies = tally_rows(estimator, settings.rings, settings.sectors);
-    buffers_.allocate(BIND_TALLY, "tally", tallies * pixels_ * sizeof(std::uint32_t), Kind::word_texels);
-    const std::uint64_t moments = moment_rows(estimator, settings.rings, settings.sectors);
-    buffers_.allocate(BIND_MOMENTS, "moments", moments * pixels_ * sizeof(float), Kind::word_texels);
-    const std::vector<float> quantiles =
-        f_thresholds(estimator, settings.rings, settings.sectors, settings.significance);
-    buffers_.upload(BIND_QUANTILES, "quantiles", quantiles, Kind::storage);
-    buffers_.allocate(BIND_AOVS, "aovs", settings.aovs ? pixels_ * sizeof(gpu::Aovs) : 0, Kind::storage);
-    const bool glossy = (features & FEATURE_GLOSS) != 0;
-    buffers_.allocate(BIND_HIT_SURFACE, "hit surfaces", glossy ? pixels_ * sizeof(gpu::HitSurface) : 0,
-                      Kind::uint_texels);
-    const bool asks = ASKS_FOR_LIGHTS(features);
-    buffers_.allocate(BIND_LIGHT_RAYS, "light rays", asks ? pixels_ * sizeof(gpu::LightRay) : 0, Kind::storage);
-    buffers_.allocate(BIND_FILM, "film", pixels_ * sizeof(gpu::Film), Kind::word_texels);
-    buffers_.allocate(BIND_CURSOR, "cursors", pixels_ * sizeof(gpu::Cursor), Kind::storage);
-    buffers_.allocate(BIND_SEARCHES, "searches", pixels_ * sizeof(std::uint32_t), Kind::storage);
-    buffers_.allocate(BIND_NEAREST, "nearest", settings.knn * pixels_ * sizeof(float), Kind::storage);
-    buffers_.allocate(BIND_IMAGE, "image", pixels_ * sizeof(gpu::vec3), Kind::storage);
-    buffers_.allocate(BIND_PATHS, "paths", params_.photon_lanes * sizeof(gpu::PathState), Kind::storage);
-    const std::uint64_t counters = std::uint64_t(params_.cells) + 1 + 2 * std::uint64_t(params_.photons) + 1 +
-                                   (std::uint64_t(params_.sort_lanes) << digit_bits_) + params_.scan_blocks;
-    buffers_.allocate(BIND_COUNTERS, "counters", counters * sizeof(std::uint32_t), Kind::word_texels);
-    allocate_photons();
-
-    gpu::PixelState pixel{};
-    pixel.batch = float(settings.knn);  // B_1 = k_NN
-    buffer(BIND_PIXELS).upload(std::vector<gpu::PixelState>(pixels_, pixel));
-    specialization_ = scene_specialization(scene.bvh, features);
-    specialization_.merge(Specialization{{SPEC_ESTIMATOR, estimator.id},
-                                         {SPEC_RINGS, settings.rings},
-                                         {SPEC_SECTORS, settings.sectors},
-                                         {SPEC_DIGIT_BITS, digit_bits_},
-                                         {SPEC_LEVELS, params_.grid_levels}});
-    std::vector<std::string> names;
-    for (const KernelModule& module : kernel_modules()) {
-        if (module.name == "path") continue;  // the path tracer's
-        names.emplace_back(module.name);
-        choices_.emplace(names.back(), forms_of(names.back(), forms));
-        passes_.push_back({names.back(), 0, 0.0});
-    }
-    compile(names);
+/// What the sizes of the buffers follow from now.
+Counts Integrator::counts() const {
+    Counts counts = counts_;
+    counts.photon_slots = std::uint64_t(params_.photon_lanes) * params_.photon_capacity;
+    counts.levels = params_.grid_levels;
+    return counts;
 }
 
 /// Buffers whose size follows the number of photons that a lane can store; again when a render needs more.
 void Integrator::allocate_photons() {
-    using Kind = Buffer::Kind;
-    const std::uint64_t slots = std::uint64_t(params_.photon_lanes) * params_.photon_capacity;
-    buffers_.allocate(BIND_PHOTONS, "photons", slots * sizeof(gpu::Photon), Kind::uint_texels);
-    buffers_.allocate(BIND_PHOTON_FLUX, "photon flux", slots * sizeof(gpu::PhotonFlux), Kind::uint_texels);
+    buffers_.allocate(
+        counts(), [](const BufferRow& row) { return row.per == Per::photon_slot && row.entries != Entries::levels; });
     const std::uint32_t levels = levels_that_fit(params_.grid_levels);
     if (levels < params_.grid_levels) limit_levels(levels);
     params_.grid_levels = levels;
     allocate_sorted();
 }
 
+/// Buffers that hold every photon once a level of the grid.
+void Integrator::allocate_sorted() {
+    buffers_.allocate(counts(), [](const BufferRow& row) { return row.entries == Entries::levels; });
+    buffer(Binding::params).upload_value(params_);
+}
+
 /// The levels of the grid, `wanted` or fewer, for which sorted photons fit the device, beside what is on it, and
 /// sorting them the loops of its driver. Fewer only where light paths store many more photons than is usual, or memory
 /// is short.
 std::uint32_t Integrator::levels_that_fit(std::uint32_t wanted) const {
-    constexpr std::uint64_t bytes = sizeof(gpu::Photon) + sizeof(gpu::PhotonFlux) + 2 * sizeof(gpu::uvec2);
-    const std::uint64_t slots = std::uint64_t(params_.photon_lanes) * params_.photon_capacity;
+    std::uint64_t bytes = 0;  // a photon slot and level
+    for (const BufferRow& row : buffer_rows()) bytes += row.entries == Entries::levels ? row.element_bytes : 0;
+    const std::uint64_t slots = counts().photon_slots;
     const std::uint64_t memory = device_.info().memory_bytes;
     const std::uint64_t left = memory - std::min(memory, device_.allocated_bytes());
     const auto fits = [&](std::uint64_t levels) {
@@ -174,19 +174,8 @@ std::uint32_t Integrator::levels_that_fit(std::uint32_t wanted) const {
 /// No more levels from now on, nor of the grid in force.
 void Integrator::limit_levels(std::uint32_t levels) {
     params_.most_levels = levels;
-    Buffer& grid = buffer(BIND_GRID);
+    Buffer& grid = buffer(Binding::grid);
     grid.upload_value(coarsest(grid.download_value<gpu::Grid>(), levels));
-}
-
-/// Buffers that hold every photon once a level of the grid.
-void Integrator::allocate_sorted() {
-    using Kind = Buffer::Kind;
-    const std::uint64_t copies = std::uint64_t(params_.photon_lanes) * params_.photon_capacity * params_.grid_levels;
-    buffers_.allocate(BIND_SORTED, "sorted photons", copies * sizeof(gpu::Photon), Kind::uint_texels);
-    buffers_.allocate(BIND_SORTED_FLUX, "sorted photon flux", copies * sizeof(gpu::PhotonFlux), Kind::uint_texels);
-    buffers_.allocate(BIND_PAIRS_A, "pairs a", copies * sizeof(gpu::uvec2), Kind::storage);
-    buffers_.allocate(BIND_PAIRS_B, "pairs b", copies * sizeof(gpu::uvec2), Kind::storage);
-    buffer(BIND_PARAMS).upload_value(params_);
 }
 
 /// Some drivers compile a kernel when it first runs. Each runs once for an iteration that is not due, which leaves all
@@ -279,7 +268,7 @@ void Integrator::launch_rounds(const std::string& kernel, std::optional<std::uin
         if (invocations) {
             launch(kernel, *invocations, push);
         } else {
-            commands_.launch_indirect(kernels_.at(kernel).front(), buffer(BIND_STATUS),
+            commands_.launch_indirect(kernels_.at(kernel).front(), buffer(Binding::status),
                                       offsetof(gpu::Status, search_groups), push);
         }
     }
@@ -355,7 +344,7 @@ std::vector<Integrator::PassHash> Integrator::run_hashed() {
 bool Integrator::unblock(Pass to) {
     bool was_blocked = false;
     while (true) {
-        gpu::Status status = buffer(BIND_STATUS).download_value<gpu::Status>();
+        gpu::Status status = buffer(Binding::status).download_value<gpu::Status>();
         rays_ += (std::uint64_t(status.rays_high) << 32) + status.rays + pixels_ * (status.completed - completed_);
         stored_ += status.stored;
         invalid_ += status.invalid;
@@ -367,7 +356,7 @@ bool Integrator::unblock(Pass to) {
                                     status.stuck, params_.step_budget, device_.info().name));
         }
         status.rays = status.rays_high = status.stored = status.invalid = status.blocked = 0;
-        buffer(BIND_STATUS).upload_value(status);
+        buffer(Binding::status).upload_value(status);
         if (blocked == 0) return was_blocked;
         was_blocked = true;
 
@@ -398,21 +387,21 @@ Image Integrator::resolve() {
     run_kernel("resolve", pixels_, {});
     Image image;
     image.extent = {params_.width, params_.height};
-    image.rgb = buffer(BIND_IMAGE).download<glm::vec3>(pixels_);
+    image.rgb = buffer(Binding::image).download<glm::vec3>(pixels_);
     return image;
 }
 
 std::vector<float> Integrator::radii() const {
     std::vector<float> radii;
-    for (const gpu::PixelState& state : buffers_.at(BIND_PIXELS).download<gpu::PixelState>(pixels_)) {
+    for (const gpu::PixelState& state : buffers_.at(Binding::pixels).download<gpu::PixelState>(pixels_)) {
         radii.push_back(float(std::sqrt(double(state.radius2)) / scale_));
     }
     return radii;
 }
 
 std::map<std::string, std::vector<float>> Integrator::aovs() const {
-    const auto states = buffers_.at(BIND_PIXELS).download<gpu::PixelState>(pixels_);
-    const auto sums = buffers_.at(BIND_AOVS).download<gpu::Aovs>(pixels_);
+    const auto states = buffers_.at(Binding::pixels).download<gpu::PixelState>(pixels_);
+    const auto sums = buffers_.at(Binding::aovs).download<gpu::Aovs>(pixels_);
     std::map<std::string, std::vector<float>> channels;
     const auto add = [&](const std::string& name, const auto& value) {
         std::vector<float>& channel = channels[name];
@@ -439,7 +428,7 @@ std::map<std::string, std::vector<float>> Integrator::aovs() const {
 
 void Integrator::set_params(const gpu::Params& params) {
     params_ = params;
-    buffer(BIND_PARAMS).upload_value(params_);
+    buffer(Binding::params).upload_value(params_);
 }
 
 void Integrator::run_kernel(const std::string& kernel, std::uint64_t invocations, const gpu::Launch& push) {
@@ -450,16 +439,16 @@ void Integrator::run_kernel(const std::string& kernel, std::uint64_t invocations
 
 void Integrator::run_from_grid() {
     // In place of the eye pass.
-    const auto hits = buffer(BIND_HIT_POSITION).download<gpu::HitPosition>(pixels_);
-    const auto states = buffer(BIND_PIXELS).download<gpu::PixelState>(pixels_);
+    const auto hits = buffer(Binding::hit_position).download<gpu::HitPosition>(pixels_);
+    const auto states = buffer(Binding::pixels).download<gpu::PixelState>(pixels_);
     std::vector<std::uint32_t> searches;
     for (std::uint32_t pixel = 0; pixel < pixels_; ++pixel) {
         if ((hits[pixel].state & HIT_DIFFUSE) && states[pixel].seeded == 0) searches.push_back(pixel);
     }
-    buffer(BIND_SEARCHES).upload(searches);
-    auto status = buffer(BIND_STATUS).download_value<gpu::Status>();
+    buffer(Binding::searches).upload(searches);
+    auto status = buffer(Binding::status).download_value<gpu::Status>();
     status.searches = std::uint32_t(searches.size());
-    buffer(BIND_STATUS).upload_value(status);
+    buffer(Binding::status).upload_value(status);
     commands_.begin();
     iterate(completed_, Pass::grid, Pass::update, 0);
     finish();

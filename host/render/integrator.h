@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "core/image.h"
-#include "flat/flatten.h"
+#include "render/buffers.h"
 #include "render/kernel_choice.h"
 #include "render/report.h"
-#include "render/scene_buffers.h"
+#include "render/scene_on_device.h"
 #include "render/settings.h"
 #include "vk/buffer.h"
 #include "vk/device.h"
@@ -24,10 +24,10 @@ namespace vkcppm {
 
 class Integrator {
 public:
-    /// Uploads the scene, allocates the buffers, compiles the pipelines. `settings` must be resolved. forms: in which
+    /// Allocates the buffers, compiles the pipelines. `scene` must outlive this, `settings` be resolved. forms: in which
     /// kernels are compiled, those of the device where there are none; every form gives the same bits.
-    /// Throws Error(out_of_device_memory) where the scene or the picture does not fit the device.
-    Integrator(Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings,
+    /// Throws Error(out_of_device_memory) where the picture does not fit the device beside what is on it.
+    Integrator(const SceneOnDevice& scene, const Camera& camera, const Settings& settings,
                std::vector<KernelForm> forms = {});
 
     /// Runs `count` iterations in one submission, or more where work had to be finished in further rounds.
@@ -72,9 +72,9 @@ public:
     /// Contributions that were not finite and were dropped.
     std::uint64_t invalid() const { return invalid_; }
 
-    /// For tests, which drive single kernels on states of their own: a buffer by its binding (BIND_*), the parameters
-    /// (uploaded by set_params), one launch of a kernel by its name.
-    Buffer& buffer(std::uint32_t binding) { return buffers_.at(binding); }
+    /// For tests, which drive single kernels on states of their own: a buffer, the parameters (uploaded by set_params),
+    /// one launch of a kernel by its name.
+    Buffer& buffer(Binding binding) { return buffers_.at(binding); }
     const gpu::Params& params() const { return params_; }
     void set_params(const gpu::Params& params);
     void run_kernel(const std::string& kernel, std::uint64_t invocations, const gpu::Launch& push);
@@ -86,6 +86,8 @@ private:
     /// Passes of an iteration, in order. The first four can run out of steps and go on in another round.
     enum class Pass { eye, photon, grid, knn, gather, update };
 
+    void set_params(const FlatScene& scene, const Settings& settings, std::uint32_t group);
+    Counts counts() const;
     void allocate_photons();
     void allocate_sorted();
     std::uint32_t levels_that_fit(std::uint32_t wanted) const;
@@ -109,7 +111,8 @@ private:
     Bindings bindings_;
     Commands commands_;
     gpu::Params params_{};
-    SceneBuffers buffers_;
+    Buffers buffers_;
+    Counts counts_;  // of what the photons' slots and levels do not change
     Specialization specialization_;
     std::map<std::string, std::vector<Kernel>> kernels_;  // a kernel's forms
     std::map<std::string, KernelChoice> choices_;

@@ -10,14 +10,13 @@
 #include "core/fnv1a.h"
 #include "render/grid.h"
 #include "render/integrator.h"
-#include "shared/bindings.h"
 
 namespace vkcppm {
 namespace {
 
-/// What an iteration leaves to the next, in the order of save(), after what the status holds for the plan of the grid.
+/// Of the status, what the next plan of the grid is made from: an iteration leaves it to the next, beside the buffers
+/// that are carried.
 constexpr std::size_t planned_from = offsetof(gpu::Status, photons);
-constexpr std::uint32_t carried[] = {BIND_PIXELS, BIND_TALLY, BIND_MOMENTS, BIND_FILM, BIND_AOVS, BIND_GRID};
 
 std::span<const std::byte> planned(const gpu::Status& status) {
     return std::as_bytes(std::span(&status, 1)).subspan(planned_from);
@@ -43,10 +42,11 @@ std::vector<std::byte> Integrator::save() const {
     const auto append = [&](std::span<const std::byte> bytes) {
         state.insert(state.end(), bytes.begin(), bytes.end());
     };
-    const gpu::Status status = buffers_.at(BIND_STATUS).download_value<gpu::Status>();
+    const gpu::Status status = buffers_.at(Binding::status).download_value<gpu::Status>();
     append(planned(status));
-    for (const std::uint32_t binding : carried) {
-        const Buffer& buffer = buffers_.at(binding);
+    for (const BufferRow& row : buffer_rows()) {
+        if (row.life != Life::carried) continue;
+        const Buffer& buffer = buffers_.at(row.binding);
         append(buffer.download<std::byte>(buffer.bytes()));
     }
     return state;
@@ -55,7 +55,8 @@ std::vector<std::byte> Integrator::save() const {
 void Integrator::restore(const Report& report, std::span<const std::byte> state) {
     gpu::Status status{};
     std::uint64_t bytes = sizeof(status) - planned_from;
-    for (const std::uint32_t binding : carried) bytes += buffers_.at(binding).bytes();
+    for (const BufferRow& row : buffer_rows())
+        bytes += row.life == Life::carried ? buffers_.at(row.binding).bytes() : 0;
     if (state.size() != bytes) {
         throw Error(ExitCode::bad_scene,
                     fmt::format("the checkpoint's state has {} bytes, that of this render {}", state.size(), bytes));
@@ -66,8 +67,10 @@ void Integrator::restore(const Report& report, std::span<const std::byte> state)
         return taken;
     };
     std::ranges::copy(take(sizeof(status) - planned_from), reinterpret_cast<std::byte*>(&status) + planned_from);
-    for (const std::uint32_t binding : carried) buffer(binding).upload(take(buffer(binding).bytes()));
-    const auto grid = buffer(BIND_GRID).download_value<gpu::Grid>();
+    for (const BufferRow& row : buffer_rows()) {
+        if (row.life == Life::carried) buffer(row.binding).upload(take(buffer(row.binding).bytes()));
+    }
+    const auto grid = buffer(Binding::grid).download_value<gpu::Grid>();
     if (!fits(grid, params_)) {
         throw Error(ExitCode::bad_scene,
                     fmt::format("the checkpoint's grid of {} levels in {} entries is not one of this render, which has "
@@ -78,7 +81,7 @@ void Integrator::restore(const Report& report, std::span<const std::byte> state)
     if (levels < grid.levels) limit_levels(levels);
     if (levels > params_.grid_levels) add_levels(levels);
     status.completed = std::uint32_t(report.iterations);
-    buffer(BIND_STATUS).upload_value(status);
+    buffer(Binding::status).upload_value(status);
     completed_ = status.completed;
     rays_ = report.rays;
     stored_ = report.stored_photons;
@@ -92,18 +95,26 @@ void Integrator::restore(const Report& report, std::span<const std::byte> state)
 
 std::uint64_t Integrator::hash_of(Pass pass) const {
     Hasher hasher;
-    const auto add_statistics = [&] {
-        for (const std::uint32_t binding : {BIND_PIXELS, BIND_TALLY, BIND_MOMENTS}) hasher.add(buffers_.at(binding));
+    const auto covers = [&](Hashed hashed) {
+        switch (hashed) {
+            case Hashed::eye: return pass == Pass::eye;
+            case Hashed::gather: return pass == Pass::gather;
+            case Hashed::update: return pass == Pass::update;
+            case Hashed::from_knn: return pass >= Pass::knn;
+            case Hashed::never:
+            case Hashed::apart: break;
+        }
+        return false;
     };
+    for (const BufferRow& row : buffer_rows()) {
+        if (covers(row.hashed)) hasher.add(buffers_.at(row.binding));
+    }
     switch (pass) {
         case Pass::eye: {
-            for (const std::uint32_t binding : {BIND_HIT_POSITION, BIND_HIT_WEIGHT, BIND_HIT_EMISSION, BIND_AOVS}) {
-                hasher.add(buffers_.at(binding));
-            }
-            const Buffer& surfaces = buffers_.at(BIND_HIT_SURFACE);
+            const Buffer& surfaces = buffers_.at(Binding::hit_surface);
             if (surfaces.bytes() < pixels_ * sizeof(gpu::HitSurface)) break;
             // Pixels that gather nothing hold the surface of an earlier iteration.
-            const auto hits = buffers_.at(BIND_HIT_POSITION).download<gpu::HitPosition>(pixels_);
+            const auto hits = buffers_.at(Binding::hit_position).download<gpu::HitPosition>(pixels_);
             const auto surface = surfaces.download<gpu::HitSurface>(pixels_);
             for (std::uint64_t i = 0; i < pixels_; ++i) {
                 if (hits[i].state & HIT_DIFFUSE) hasher.add(surface[i]);
@@ -114,10 +125,10 @@ std::uint64_t Integrator::hash_of(Pass pass) const {
             // In the order of paths, whatever the lanes and their slots.
             const std::uint64_t paths = params_.photons, counts_at = std::uint64_t(params_.cells) + 1;
             const std::uint64_t slots_at = counts_at + paths + 1;
-            const auto counters = buffers_.at(BIND_COUNTERS).download<std::uint32_t>(slots_at + paths);
+            const auto counters = buffers_.at(Binding::counters).download<std::uint32_t>(slots_at + paths);
             const std::uint64_t slots = std::uint64_t(params_.photon_lanes) * params_.photon_capacity;
-            const auto photons = buffers_.at(BIND_PHOTONS).download<gpu::Photon>(slots);
-            const auto flux = buffers_.at(BIND_PHOTON_FLUX).download<gpu::PhotonFlux>(slots);
+            const auto photons = buffers_.at(Binding::photons).download<gpu::Photon>(slots);
+            const auto flux = buffers_.at(Binding::photon_flux).download<gpu::PhotonFlux>(slots);
             for (std::uint64_t path = 0; path < paths; ++path) {
                 const std::uint64_t begin = counters[slots_at + path], end = begin + counters[counts_at + path];
                 assert(end <= slots);
@@ -129,28 +140,18 @@ std::uint64_t Integrator::hash_of(Pass pass) const {
             break;
         }
         case Pass::grid: {
-            const auto grid = buffers_.at(BIND_GRID).download_value<gpu::Grid>();
-            const auto starts = buffers_.at(BIND_COUNTERS).download<std::uint32_t>(std::uint64_t(grid.entries) + 1);
+            const auto grid = buffers_.at(Binding::grid).download_value<gpu::Grid>();
+            const auto starts = buffers_.at(Binding::counters).download<std::uint32_t>(std::uint64_t(grid.entries) + 1);
             const std::uint64_t photons = starts.back();
             hasher.add(grid);
-            hasher.add(buffers_.at(BIND_COUNTERS), starts.size() * sizeof(std::uint32_t));
-            hasher.add(buffers_.at(BIND_SORTED), photons * sizeof(gpu::Photon));
-            hasher.add(buffers_.at(BIND_SORTED_FLUX), photons * sizeof(gpu::PhotonFlux));
+            hasher.add(buffers_.at(Binding::counters), starts.size() * sizeof(std::uint32_t));
+            hasher.add(buffers_.at(Binding::sorted), photons * sizeof(gpu::Photon));
+            hasher.add(buffers_.at(Binding::sorted_flux), photons * sizeof(gpu::PhotonFlux));
             break;
         }
-        case Pass::knn: add_statistics(); break;
-        case Pass::gather: {
-            hasher.add(buffers_.at(BIND_GATHERED));
-            add_statistics();
-            break;
-        }
-        case Pass::update: {
-            hasher.add(buffers_.at(BIND_FILM));
-            add_statistics();
-            const auto status = buffers_.at(BIND_STATUS).download_value<gpu::Status>();
-            hasher.add(planned(status));
-            break;
-        }
+        case Pass::update: hasher.add(planned(buffers_.at(Binding::status).download_value<gpu::Status>())); break;
+        case Pass::knn:
+        case Pass::gather: break;
     }
     return hasher.hash();
 }

@@ -5,7 +5,6 @@
 #include "core/error.h"
 #include "flat/features.h"
 #include "render/kernels.h"
-#include "shared/bindings.h"
 
 namespace vkcppm {
 namespace {
@@ -16,25 +15,28 @@ Specialization specialize(const FlatScene& scene, const Settings& settings, Path
     std::uint32_t features = bits_of(scene.features) | bits_of(features_of(settings));
     features &= ~(FEATURE_AOVS | FEATURE_SPLIT);
     if (light == PathTracer::Light::split) features |= FEATURE_SPLIT;
-    return scene_specialization(scene.bvh, features);
+    return scene_specialization(scene, features);
 }
 
 }  // namespace
 
-PathTracer::PathTracer(Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings,
-                       Light light)
-    : device_(device),
-      bindings_(device),
-      commands_(device, bindings_, timed_launches),
-      buffers_(device, bindings_, scene),
-      kernel_(device, bindings_, "path", kernel_module("path").spirv, specialize(scene, settings, light)),
+PathTracer::PathTracer(const SceneOnDevice& scene, const Camera& camera, const Settings& settings, Light light)
+    : device_(scene.device()),
+      bindings_(device_),
+      commands_(device_, bindings_, timed_launches),
+      buffers_(device_, bindings_),
+      kernel_(device_, bindings_, "path", kernel_module("path").spirv, specialize(scene.flat(), settings, light)),
       size_(*settings.size) {
-    using Kind = Buffer::Kind;
-    const gpu::Params params = scene_params(device, scene, camera, settings, light == Light::split);
-    buffers_.upload(BIND_PARAMS, "parameters", std::vector{params}, Kind::uniform);
-    buffers_.allocate(BIND_STATUS, "status", sizeof(gpu::Status), Kind::storage);
-    buffers_.allocate(BIND_PATHS, "traces", size_.pixels() * sizeof(gpu::TraceState), Kind::storage);
-    buffers_.allocate(BIND_IMAGE, "image", size_.pixels() * sizeof(gpu::vec3), Kind::storage);
+    scene.lend(buffers_);
+    Counts counts;
+    counts.pixels = size_.pixels();
+    counts.traced = true;
+    buffers_.allocate(counts, [](const BufferRow& row) {
+        return row.entries == Entries::where_traced || row.binding == Binding::image ||
+               row.binding == Binding::params || row.binding == Binding::status;
+    });
+    buffers_.at(Binding::params)
+        .upload_value(scene_params(device_, scene.flat(), camera, settings, light == Light::split));
 }
 
 Image PathTracer::trace() {
@@ -42,7 +44,7 @@ Image PathTracer::trace() {
     status.completed = batches_;
     for (std::uint32_t first_round = 0; first_round == 0 || status.blocked != 0;) {
         status.blocked = status.rays = status.invalid = 0;
-        buffers_.at(BIND_STATUS).upload_value(status);
+        buffers_.at(Binding::status).upload_value(status);
         commands_.begin();
         for (std::uint32_t r = 0; r < rounds_; ++r) {
             const std::uint32_t last = r + 1 == rounds_ ? 1 : 0;
@@ -55,7 +57,7 @@ Image PathTracer::trace() {
             pass_.device_seconds += timing.seconds;
         }
         first_round += rounds_;
-        status = buffers_.at(BIND_STATUS).download_value<gpu::Status>();
+        status = buffers_.at(Binding::status).download_value<gpu::Status>();
         if (status.stuck > 0) {
             throw Error(ExitCode::internal,
                         fmt::format("{} rays need more than {} steps of the BVH each, the limit of device '{}'",
@@ -66,7 +68,7 @@ Image PathTracer::trace() {
         if (status.blocked != 0 && rounds_ < timed_launches) rounds_ *= 2;
     }
     ++batches_;
-    return {size_, buffers_.at(BIND_IMAGE).download<glm::vec3>(size_.pixels())};
+    return {size_, buffers_.at(Binding::image).download<glm::vec3>(size_.pixels())};
 }
 
 }  // namespace vkcppm

@@ -4,9 +4,9 @@
 #include <cstdint>
 
 #include "core/image.h"
-#include "flat/flatten.h"
 #include "render/report.h"
-#include "render/scene_buffers.h"
+#include "render/buffers.h"
+#include "render/scene_on_device.h"
 #include "render/settings.h"
 #include "vk/device.h"
 #include "vk/kernel.h"
@@ -18,9 +18,9 @@ public:
     /// Which paths: all that path tracing finds, or the paths' half of split light (FEATURE_SPLIT).
     enum class Light { all, split };
 
-    /// Uploads the scene and compiles the pipeline. `settings` must be resolved; size, camera, lens, seed and max_depth
-    /// count. Throws Error(out_of_device_memory) where the scene or the picture does not fit the device.
-    PathTracer(Device& device, const FlatScene& scene, const Camera& camera, const Settings& settings, Light light);
+    /// Compiles the pipeline. `scene` must outlive this, `settings` be resolved; size, camera, lens, seed and max_depth
+    /// count. Throws Error(out_of_device_memory) where the picture does not fit the device beside what is on it.
+    PathTracer(const SceneOnDevice& scene, const Camera& camera, const Settings& settings, Light light);
 
     /// Paths a pixel of one trace().
     static constexpr std::uint32_t batch = 16;
@@ -40,7 +40,7 @@ private:
     Device& device_;
     Bindings bindings_;
     Commands commands_;
-    SceneBuffers buffers_;
+    Buffers buffers_;
     Kernel kernel_;
     Extent size_;
     PassReport pass_{"path", 0, 0.0};

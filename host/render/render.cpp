@@ -53,7 +53,8 @@ Rendering render(const Scene& scene, const Settings& wanted, Device& device, con
     result.settings = resolve_settings(wanted, scene);
     const Settings& settings = result.settings;
     const FlatScene flat = flatten(scene);
-    Integrator integrator(device, flat, camera_of(settings, scene), settings);
+    const SceneOnDevice on_device(device, flat);
+    Integrator integrator(on_device, camera_of(settings, scene), settings);
     if (checkpointing.from) {
         result.report = checkpointing.from->report;
         result.curve = checkpointing.from->curve;

@@ -31,13 +31,14 @@ void add_squared_error(std::vector<double>& sums, const Image& image, const Imag
 class Lane {
 public:
     /// Starts a curve in `run`. Throws Error(out_of_device_memory) with the entrant.
-    Lane(Device& device, const FlatScene& flat, const Scene& scene, RaceRun& run, std::uint32_t seed)
+    Lane(const SceneOnDevice& on_device, const Scene& scene, RaceRun& run, std::uint32_t seed)
         : run_(run), settings_(run.entrant.settings) {
         settings_.seed = seed;
         try {
-            integrator_ = std::make_unique<Integrator>(device, flat, camera_of(settings_, scene), settings_);
+            integrator_ = std::make_unique<Integrator>(on_device, camera_of(settings_, scene), settings_);
         } catch (const Error& error) {
             if (error.code() != ExitCode::out_of_device_memory) throw;
+            const Device& device = on_device.device();
             throw Error(error.code(), fmt::format("entrant '{}': {}; the entrants before it hold {} of the device's {} "
                                                   "bytes",
                                                   run.entrant.name, error.what(), device.allocated_bytes(),
@@ -132,11 +133,12 @@ RaceResult run_race(const Scene& scene, const RaceSettings& race, const Image& r
     if (sppm != race.entrants.end()) result.baseline = std::size_t(sppm - race.entrants.begin());
 
     const FlatScene flat = flatten(scene);
+    const SceneOnDevice on_device(device, flat);
     const double begin = wall_now();
     for (std::uint32_t s = 0; s < race.seeds && !result.interrupted; ++s) {
         const std::uint32_t seed = race.entrants.front().settings.seed + s;
         std::vector<Lane> lanes;
-        for (RaceRun& run : result.runs) lanes.emplace_back(device, flat, scene, run, seed);
+        for (RaceRun& run : result.runs) lanes.emplace_back(on_device, scene, run, seed);
         const auto progress = [&] {
             double done = s;
             for (const Lane& lane : lanes) done += lane.done() / double(lanes.size());

@@ -69,9 +69,9 @@ private:
 
 class Paths : public Half {
 public:
-    Paths(Device& device, const FlatScene& flat, const Camera& camera, const ReferenceSettings& settings)
+    Paths(const SceneOnDevice& on_device, const Camera& camera, const ReferenceSettings& settings)
         : Half(*settings.render.size, settings.samples / PathTracer::batch),
-          tracer(device, flat, camera, settings.render, PathTracer::Light::split) {}
+          tracer(on_device, camera, settings.render, PathTracer::Light::split) {}
 
     PathTracer tracer;
 
@@ -81,9 +81,9 @@ private:
 
 class Caustics : public Half {
 public:
-    Caustics(Device& device, const FlatScene& flat, const Camera& camera, const ReferenceSettings& settings)
+    Caustics(const SceneOnDevice& on_device, const Camera& camera, const ReferenceSettings& settings)
         : Half(*settings.render.size, settings.render.iterations / iterations_a_batch),
-          integrator(device, flat, camera, caustic_settings(settings.render)),
+          integrator(on_device, camera, caustic_settings(settings.render)),
           sum_(settings.render.size->pixels(), glm::dvec3(0.0)) {}
 
     Integrator integrator;
@@ -272,10 +272,11 @@ Reference make_reference(const Scene& scene, const ReferenceSettings& wanted, De
     const Settings& settings = result.settings.render;
     const Camera& camera = camera_of(settings, scene);
     const FlatScene flat = flatten(scene);
-    Paths paths(device, flat, camera, result.settings);
+    const SceneOnDevice on_device(device, flat);
+    Paths paths(on_device, camera, result.settings);
     std::unique_ptr<Caustics> caustics;
     if (splits_near_lamps(flat) || std::ranges::any_of(traits_of(scene), &SurfaceTraits::smooth)) {
-        caustics = std::make_unique<Caustics>(device, flat, camera, result.settings);
+        caustics = std::make_unique<Caustics>(on_device, camera, result.settings);
     }
     std::vector<Half*> halves{&paths};
     if (caustics) halves.push_back(caustics.get());

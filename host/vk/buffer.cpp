@@ -21,24 +21,28 @@ std::optional<std::uint32_t> memory_type(const vk::PhysicalDeviceMemoryPropertie
     return std::nullopt;
 }
 
-vk::BufferUsageFlags usage_of(Buffer::Kind kind) {
+vk::BufferUsageFlags usage_of(Access access) {
     using Usage = vk::BufferUsageFlagBits;
     const vk::BufferUsageFlags transfer = Usage::eTransferSrc | Usage::eTransferDst;
-    switch (kind) {
-        case Buffer::Kind::uniform: return transfer | Usage::eUniformBuffer;
-        case Buffer::Kind::storage: return transfer | Usage::eStorageBuffer | Usage::eIndirectBuffer;
+    switch (access) {
+        case Access::uniform: return transfer | Usage::eUniformBuffer;
+        case Access::storage: return transfer | Usage::eStorageBuffer | Usage::eIndirectBuffer;
         default: return transfer | Usage::eUniformTexelBuffer | Usage::eStorageBuffer;
     }
 }
 
 /// The format of the texels; none where the buffer is not read as texels.
-std::optional<vk::Format> texel_format(Buffer::Kind kind) {
-    switch (kind) {
-        case Buffer::Kind::uint_texels: return vk::Format::eR32G32B32A32Uint;
-        case Buffer::Kind::float_texels: return vk::Format::eR32G32B32A32Sfloat;
-        case Buffer::Kind::word_texels: return vk::Format::eR32Uint;
-        default: return std::nullopt;
+std::optional<vk::Format> texel_format(Access access) {
+    switch (access) {
+        case Access::uniform:
+        case Access::storage: return std::nullopt;
+        case Access::uint_texels:
+        case Access::records: return vk::Format::eR32G32B32A32Uint;
+        case Access::float_texels: return vk::Format::eR32G32B32A32Sfloat;
+        case Access::word_texels:
+        case Access::words: return vk::Format::eR32Uint;
     }
+    return std::nullopt;
 }
 
 void check_limits(const Buffer::Impl& buffer, const vk::PhysicalDeviceLimits& limits) {
@@ -47,8 +51,9 @@ void check_limits(const Buffer::Impl& buffer, const vk::PhysicalDeviceLimits& li
                     fmt::format("buffer '{}' needs {} {}, the device '{}' allows {}", buffer.name, value, what,
                                 buffer.device->info().name, limit));
     };
-    const std::uint64_t texels = buffer.bytes / (buffer.kind == Buffer::Kind::word_texels ? 4 : 16);
-    if (texel_format(buffer.kind) && texels > limits.maxTexelBufferElements) {
+    const auto format = texel_format(buffer.access);
+    const std::uint64_t texels = buffer.bytes / (format == vk::Format::eR32Uint ? 4 : 16);
+    if (format && texels > limits.maxTexelBufferElements) {
         refuse("texels", texels, limits.maxTexelBufferElements);
     }
     if (buffer.bytes > limits.maxStorageBufferRange) refuse("bytes", buffer.bytes, limits.maxStorageBufferRange);
@@ -97,26 +102,27 @@ void through_staging(Device& device, std::uint64_t bytes, Before before, Copy co
 
 }  // namespace
 
-Buffer::Buffer(Device& device, std::string name, std::uint64_t bytes, Kind kind) : impl_(std::make_unique<Impl>()) {
+Buffer::Buffer(Device& device, Binding binding, std::uint64_t bytes) : impl_(std::make_unique<Impl>()) {
     Impl& impl = *impl_;
     auto& gpu = device.impl();
     impl.device = &device;
-    impl.name = std::move(name);
+    impl.name = bound_buffer(binding).name;
+    std::ranges::replace(impl.name, '_', ' ');
     impl.bytes = (std::max<std::uint64_t>(bytes, 16) + 15) / 16 * 16;  // whole texels
-    impl.kind = kind;
+    impl.access = bound_buffer(binding).access;
     check_limits(impl, gpu.limits);
     check_heap(impl);
     guarded(fmt::format("allocating buffer '{}' of {} bytes ({} bytes are allocated)", impl.name, impl.bytes,
                         gpu.allocated),
             [&] {
-                impl.buffer.emplace(*gpu.device, vk::BufferCreateInfo({}, impl.bytes, usage_of(kind)));
+                impl.buffer.emplace(*gpu.device, vk::BufferCreateInfo({}, impl.bytes, usage_of(impl.access)));
                 bool mappable = false;
                 impl.memory.emplace(allocate(gpu, *impl.buffer, Memory::eDeviceLocal, mappable));
                 gpu.allocated += impl.bytes;
                 gpu.peak = std::max(gpu.peak, gpu.allocated);
                 impl.buffer->bindMemory(**impl.memory, 0);
                 if (mappable) impl.mapped = static_cast<std::byte*>(impl.memory->mapMemory(0, VK_WHOLE_SIZE));
-                if (const auto format = texel_format(kind)) {
+                if (const auto format = texel_format(impl.access)) {
                     impl.view.emplace(*gpu.device,
                                       vk::BufferViewCreateInfo({}, **impl.buffer, *format, 0, VK_WHOLE_SIZE));
                 }

@@ -8,23 +8,18 @@
 #include <string>
 #include <vector>
 
+#include "vk/binding.h"
+
 namespace vkcppm {
 
 class Device;
 
 class Buffer {
 public:
-    enum class Kind {
-        uniform,
-        storage,
-        uint_texels,   // read as RGBA32UI texels, and as storage
-        float_texels,  // read as RGBA32F texels, and as storage
-        word_texels,   // read as R32UI texels, and as storage
-    };
-
-    /// At least `bytes` bytes of zeros (an empty buffer holds 16). Throws Error(out_of_device_memory) with the name,
-    /// the size and the limit where it is larger than the device allows or than there is memory for.
-    Buffer(Device& device, std::string name, std::uint64_t bytes, Kind kind);
+    /// A buffer for that binding: at least `bytes` bytes of zeros (an empty buffer holds 16). Throws
+    /// Error(out_of_device_memory) with the name, the size and the limit where it is larger than the device allows or
+    /// than there is memory for.
+    Buffer(Device& device, Binding binding, std::uint64_t bytes);
     ~Buffer();
     Buffer(Buffer&&) noexcept;
     Buffer& operator=(Buffer&&) noexcept;

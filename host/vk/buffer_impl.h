@@ -10,7 +10,7 @@ struct Buffer::Impl {
     Device* device = nullptr;
     std::string name;
     std::uint64_t bytes = 0;
-    Kind kind = Kind::storage;
+    Access access = Access::storage;
     std::optional<vk::raii::DeviceMemory> memory;
     std::optional<vk::raii::Buffer> buffer;
     std::optional<vk::raii::BufferView> view;

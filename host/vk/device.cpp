@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "shared/bindings.h"
 #include "shared/types.h"
+#include "vk/binding.h"
 #include "vk/vulkan.h"
 
 namespace vkcppm {
@@ -71,12 +71,15 @@ std::string missing(const vk::raii::PhysicalDevice& physical) {
         return "subgroup ballots in compute shaders are needed";
     }
     if (!compute_family(physical)) return "no compute queue with timestamps";
-    const std::uint32_t storage = BIND_COUNT - BIND_FIRST_STORAGE;
+    const auto with = [](bool (*has)(Access)) {
+        return std::uint32_t(std::ranges::count_if(bound_buffers, has, &BoundBuffer::access));
+    };
+    const std::uint32_t storage = with(has_storage);
     if (std::min(limits.maxPerStageDescriptorStorageBuffers, limits.maxDescriptorSetStorageBuffers) < storage) {
         return fmt::format("{} storage buffers a stage, {} are needed", limits.maxPerStageDescriptorStorageBuffers,
                            storage);
     }
-    const std::uint32_t texels = BIND_FIRST_STORAGE - BIND_FIRST_TEXEL;
+    const std::uint32_t texels = with(has_texels);
     if (std::min(limits.maxPerStageDescriptorSampledImages, limits.maxDescriptorSetSampledImages) < texels) {
         return fmt::format("{} texel buffers a stage, {} are needed", limits.maxPerStageDescriptorSampledImages,
                            texels);

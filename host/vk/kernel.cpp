@@ -1,23 +1,14 @@
 #include "vk/kernel.h"
 
-#include <array>
 #include <cassert>
+#include <map>
 
 #include <fmt/format.h>
 
-#include "shared/bindings.h"
 #include "vk/buffer_impl.h"
 #include "vk/vulkan.h"
 
 namespace vkcppm {
-namespace {
-
-vk::DescriptorType descriptor_type(std::uint32_t binding) {
-    if (binding < BIND_FIRST_TEXEL) return vk::DescriptorType::eUniformBuffer;
-    return binding < BIND_FIRST_STORAGE ? vk::DescriptorType::eUniformTexelBuffer : vk::DescriptorType::eStorageBuffer;
-}
-
-}  // namespace
 
 struct Bindings::Impl {
     Device* device = nullptr;
@@ -32,17 +23,23 @@ Bindings::Bindings(Device& device) : impl_(std::make_unique<Impl>()) {
         auto& gpu = *device.impl().device;
         impl_->device = &device;
         std::vector<vk::DescriptorSetLayoutBinding> bindings;
-        for (std::uint32_t i = 0; i < BIND_COUNT; ++i) {
-            bindings.emplace_back(i, descriptor_type(i), 1, vk::ShaderStageFlagBits::eCompute);
+        std::map<vk::DescriptorType, std::uint32_t> counts;
+        const auto add = [&](std::uint32_t binding, vk::DescriptorType type) {
+            bindings.emplace_back(binding, type, 1, vk::ShaderStageFlagBits::eCompute);
+            ++counts[type];
+        };
+        for (const BoundBuffer& row : bound_buffers) {
+            const auto binding = std::uint32_t(row.binding);
+            if (row.access == Access::uniform) add(binding, vk::DescriptorType::eUniformBuffer);
+            if (has_storage(row.access)) add(binding, vk::DescriptorType::eStorageBuffer);
+            if (has_texels(row.access)) add(TEXELS_BINDING + binding, vk::DescriptorType::eUniformTexelBuffer);
         }
         impl_->set_layout.emplace(gpu, vk::DescriptorSetLayoutCreateInfo({}, bindings));
         const vk::PushConstantRange push(vk::ShaderStageFlagBits::eCompute, 0, sizeof(gpu::Launch));
         const vk::DescriptorSetLayout set_layout = **impl_->set_layout;
         impl_->layout.emplace(gpu, vk::PipelineLayoutCreateInfo({}, set_layout, push));
-        const std::array sizes = {
-            vk::DescriptorPoolSize(vk::DescriptorType::eUniformBuffer, BIND_FIRST_TEXEL),
-            vk::DescriptorPoolSize(vk::DescriptorType::eUniformTexelBuffer, BIND_FIRST_STORAGE - BIND_FIRST_TEXEL),
-            vk::DescriptorPoolSize(vk::DescriptorType::eStorageBuffer, BIND_COUNT - BIND_FIRST_STORAGE)};
+        std::vector<vk::DescriptorPoolSize> sizes;
+        for (const auto& [type, count] : counts) sizes.emplace_back(type, count);
         impl_->pool.emplace(
             gpu, vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes));
         vk::raii::DescriptorSets sets(gpu, vk::DescriptorSetAllocateInfo(**impl_->pool, set_layout));
@@ -52,19 +49,26 @@ Bindings::Bindings(Device& device) : impl_(std::make_unique<Impl>()) {
 
 Bindings::~Bindings() = default;
 
-void Bindings::bind(std::uint32_t binding, const Buffer& buffer) {
+void Bindings::bind(Binding binding, const Buffer& buffer) {
     const auto& source = buffer.impl();
-    const vk::DescriptorType type = descriptor_type(binding);
+    const Access access = bound_buffer(binding).access;
+    assert(access == source.access);
     const vk::DescriptorBufferInfo info(**source.buffer, 0, VK_WHOLE_SIZE);
-    vk::WriteDescriptorSet write(**impl_->set, binding, 0, 1, type, nullptr, &info);
-    vk::BufferView view;
-    if (type == vk::DescriptorType::eUniformTexelBuffer) {
-        assert(source.view);
-        view = **source.view;
-        write.setPTexelBufferView(&view);
-        write.setPBufferInfo(nullptr);
+    std::vector<vk::WriteDescriptorSet> writes;
+    const auto number = std::uint32_t(binding);
+    if (access == Access::uniform) {
+        writes.emplace_back(**impl_->set, number, 0, 1, vk::DescriptorType::eUniformBuffer, nullptr, &info);
     }
-    impl_->device->impl().device->updateDescriptorSets(write, {});
+    if (has_storage(access)) {
+        writes.emplace_back(**impl_->set, number, 0, 1, vk::DescriptorType::eStorageBuffer, nullptr, &info);
+    }
+    vk::BufferView view;
+    if (has_texels(access)) {
+        view = **source.view;
+        writes.emplace_back(**impl_->set, TEXELS_BINDING + number, 0, 1, vk::DescriptorType::eUniformTexelBuffer,
+                            nullptr, nullptr, &view);
+    }
+    impl_->device->impl().device->updateDescriptorSets(writes, {});
 }
 
 struct Kernel::Impl {

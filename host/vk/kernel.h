@@ -1,5 +1,5 @@
 #pragma once
-// Compute pipelines over the one descriptor set of shaders/shared/bindings.h, and launches of them.
+// Compute pipelines over the one descriptor set of shaders/shared/buffers.h, and launches of them.
 
 #include <cstdint>
 #include <map>
@@ -15,7 +15,7 @@ namespace vkcppm {
 
 class Device;
 
-/// The descriptor set: which buffer stands at which binding (BIND_*). Rebinding needs an idle device.
+/// The descriptor set: which buffer stands at which binding. Rebinding needs an idle device.
 class Bindings {
 public:
     explicit Bindings(Device& device);
@@ -23,8 +23,9 @@ public:
     Bindings(const Bindings&) = delete;
     Bindings& operator=(const Bindings&) = delete;
 
-    /// Asserts that the kind of the buffer fits the binding. The buffer must outlive every launch.
-    void bind(std::uint32_t binding, const Buffer& buffer);
+    /// Binds it, and where kernels read it as texels its view. Asserts that the buffer was made for a binding of that
+    /// access. It must outlive every launch.
+    void bind(Binding binding, const Buffer& buffer);
 
     struct Impl;
     Impl& impl() const { return *impl_; }

@@ -5,7 +5,8 @@
 //   number   of its binding; where kernels read it as texels, TEXELS_BINDING + number is that of the view
 //   name     of the array in kernels, Binding::name on the host
 //   Element  what it is an array of: a struct of types.h, or uint, float, uvec2, vec3, vec4
-//   per      what it has entries for, as --stats counts memory (Per of host/render/buffers.h)
+//   per      what it has entries for, as --stats counts memory (Per of host/render/buffers.h); the first row of
+//            each has one entry for each
 //   entries  how many for each (Entries of host/render/buffers.h)
 //   access   uniform      as a uniform block
 //            storage      as a storage buffer
@@ -29,7 +30,7 @@
 #define PARAMS(ROW)            ROW(0, params, Params, rest, one, uniform, scratch, never)
 #define STATUS(ROW)            ROW(1, status, Status, rest, one, storage, scratch, never)
 #define GRID(ROW)              ROW(2, grid, Grid, rest, one, storage, carried, apart)
-// Of the scene: the members of that name of FlatScene (host/flat/flatten.h).
+// Of the scene: members of that name of FlatScene (host/flat/flatten.h), but for the nodes of its BVH.
 #define NODES(ROW)             ROW(3, nodes, BvhNode, node, uploaded, uint_texels, scratch, never)
 #define TRIANGLES(ROW)         ROW(4, triangles, TriangleGeometry, triangle, uploaded, float_texels, scratch, never)
 #define SHADING(ROW)           ROW(5, shading, TriangleShading, triangle, uploaded, uint_texels, scratch, never)
@@ -58,7 +59,7 @@
 #define TALLY(ROW)             ROW(27, tally, uint, pixel, tallies, words, carried, from_knn)
 #define MOMENTS(ROW)           ROW(28, moments, float, pixel, moments, words, carried, from_knn)
 #define IMAGE(ROW)             ROW(29, image, vec3, pixel, one, storage, scratch, never)
-#define TRACES(ROW)            ROW(30, traces, TraceState, pixel, one, storage, scratch, never)
+#define TRACES(ROW)            ROW(30, traces, TraceState, pixel, where_traced, storage, scratch, never)
 // Of photons: [lanes x capacity] slots, and sorted once a level of the grid.
 #define PATHS(ROW)             ROW(31, paths, PathState, photon_lane, one, storage, scratch, never)
 #define PHOTONS(ROW)           ROW(32, photons, Photon, photon_slot, one, records, scratch, apart)
@@ -72,10 +73,10 @@
 #define QUANTILES(ROW)         ROW(39, quantiles, float, rest, uploaded, storage, scratch, never)
 
 #define SCENE_BUFFERS(ROW)                                                                               \
-    NODES(ROW) TRIANGLES(ROW) SHADING(ROW) TEXCOORDS(ROW) VERTEX_COLORS(ROW) TANGENTS(ROW) MATERIALS(ROW) \
-    TEXTURES(ROW) IMAGES(ROW) LIGHTS(ROW) ENVIRONMENT(ROW) ENVIRONMENT_ALIAS(ROW)
+    TRIANGLES(ROW) SHADING(ROW) TEXCOORDS(ROW) VERTEX_COLORS(ROW) TANGENTS(ROW) MATERIALS(ROW) TEXTURES(ROW) \
+    IMAGES(ROW) LIGHTS(ROW) ENVIRONMENT(ROW) ENVIRONMENT_ALIAS(ROW)
 #define BUFFERS(ROW)                                                                                      \
-    PARAMS(ROW) STATUS(ROW) GRID(ROW) SCENE_BUFFERS(ROW)                                                  \
+    PARAMS(ROW) STATUS(ROW) GRID(ROW) NODES(ROW) SCENE_BUFFERS(ROW)                                                  \
     HIT_POSITION(ROW) HIT_WEIGHT(ROW) HIT_EMISSION(ROW) AOVS(ROW) HIT_SURFACE(ROW) LIGHT_RAYS(ROW)        \
     SEARCHES(ROW) CURSORS(ROW) NEAREST(ROW) GATHERED(ROW) FILM(ROW) PIXELS(ROW) TALLY(ROW) MOMENTS(ROW)   \
     IMAGE(ROW) TRACES(ROW)                                                                                \
@@ -83,4 +84,6 @@
     COUNTERS(ROW) QUANTILES(ROW)
 // clang-format on
 
+// PARAMS(BINDING_NUMBER): its binding.
+#define BINDING_NUMBER(number, name, Element, per, entries, access, life, hashed) number
 #define TEXELS_BINDING 64  // beyond every row

@@ -140,7 +140,8 @@ void keep_least(Times& least, const Scene& scene, const Settings& wanted, std::u
     if (forced & FEATURE_VERTEX_COLORS) {
         flat.vertex_colors.assign(2 * flat.triangles.size(), glm::uvec4(0x3c003c00u));  // white, as half floats
     }
-    Integrator integrator(plain_device(), flat, scene.cameras.at(0), settings);
+    const SceneOnDevice on_device(plain_device(), flat);
+    Integrator integrator(on_device, scene.cameras.at(0), settings);
     Report before, after;
     integrator.run(warm);
     integrator.fill(before);

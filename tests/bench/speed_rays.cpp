@@ -15,7 +15,6 @@
 #include "reference/embree.h"
 #include "render/render.h"
 #include "render/scene_buffers.h"
-#include "shared/bindings.h"
 #include "vk/kernel.h"
 
 namespace vkcppm::bench {
@@ -90,18 +89,20 @@ public:
     Tracer(Device& device, const FlatScene& flat, const Settings& settings, const Scene& scene)
         : bindings_(device),
           commands_(device, bindings_, 1),
-          buffers_(device, bindings_, flat),
-          trace_(device, bindings_, "trace", trace_words, scene_specialization(flat.bvh, 0)),
-          stream_(device, bindings_, "stream", stream_words, scene_specialization(flat.bvh, 0)) {
+          buffers_(device, bindings_),
+          on_device_(device, flat),
+          trace_(device, bindings_, "trace", trace_words, scene_specialization(flat, 0)),
+          stream_(device, bindings_, "stream", stream_words, scene_specialization(flat, 0)) {
         params_ = scene_params(device, flat, scene.cameras.at(0), settings, false);
-        buffers_.upload(BIND_PARAMS, "parameters", std::vector{params_}, Buffer::Kind::uniform);
-        buffers_.allocate(BIND_STATUS, "status", sizeof(gpu::Status), Buffer::Kind::storage);
+        on_device_.lend(buffers_);
+        buffers_.upload(Binding::params, std::vector{params_});
+        buffers_.allocate(Binding::status, 1);
     }
 
     void take(const Rays& rays) {
         count_ = std::uint32_t(rays.size());
-        buffers_.upload(PROBE_INPUT, "rays", rays, Buffer::Kind::storage);
-        buffers_.allocate(PROBE_OUTPUT, "hits", rays.size() * sizeof(gpu::RayOutput), Buffer::Kind::storage);
+        buffers_.upload(PROBE_INPUT, rays);
+        buffers_.upload(PROBE_OUTPUT, std::vector<gpu::RayOutput>(rays.size()));
     }
     /// One ray a lane, as eye paths are traced.
     Seconds trace() { return run(trace_, count_); }
@@ -123,7 +124,8 @@ private:
 
     Bindings bindings_;
     Commands commands_;
-    SceneBuffers buffers_;
+    Buffers buffers_;
+    SceneOnDevice on_device_;
     Kernel trace_;
     Kernel stream_;
     gpu::Params params_{};

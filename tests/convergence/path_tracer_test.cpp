@@ -32,7 +32,8 @@ constexpr std::uint32_t samples = 256;
 reference::PathTracing trace_on_device(const Scene& scene, const Settings& wanted) {
     const Settings settings = resolve_settings(wanted, scene);
     const FlatScene flat = flatten(scene);
-    PathTracer tracer(plain_device(), flat, scene.cameras.at(0), settings, PathTracer::Light::all);
+    const SceneOnDevice on_device(plain_device(), flat);
+    PathTracer tracer(on_device, scene.cameras.at(0), settings, PathTracer::Light::all);
     Moments moments(*settings.size);
     for (std::uint32_t i = 0; i < samples / PathTracer::batch; ++i) moments.add(tracer.trace());
     EXPECT_EQ(tracer.invalid(), 0u);

@@ -43,7 +43,7 @@ TEST_F(BoundsEntry, RaysStartBeforeTheBoxAndNearIt) {
             rays.push_back({glm::vec3(origin), glm::vec3(glm::normalize(direction))});
         }
         Probe probe("bounds", bounds_words);
-        probe.input(BIND_PARAMS, std::vector{params}, Buffer::Kind::uniform);
+        probe.input(Binding::params, std::vector{params});
         probe.input(PROBE_INPUT, rays);
         probe.output<glm::vec3>(PROBE_OUTPUT, rays.size());
         probe.run(rays.size(),

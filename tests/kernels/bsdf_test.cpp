@@ -161,15 +161,14 @@ protected:
         GpuTest::SetUp();
         gpu::Params params{};
         params.knn = knn;
-        probe_.input(BIND_PARAMS, std::vector{params}, Buffer::Kind::uniform);
+        probe_.input(Binding::params, std::vector{params});
     }
 
     std::vector<gpu::BsdfOutput> run(const Material& material, const gpu::BsdfView& view,
                                      const std::vector<gpu::BsdfInput>& inputs, bool follow) {
         const Scene scene;
         TextureTable textures(scene);
-        probe_.input(BIND_MATERIALS, std::vector{surface_of(material, traits_of(material, 1.0f), 1.0, textures)},
-                     Buffer::Kind::uint_texels);
+        probe_.input(Binding::materials, std::vector{surface_of(material, traits_of(material, 1.0f), 1.0, textures)});
         probe_.input(PROBE_VIEW, std::vector{view});
         probe_.input(PROBE_INPUT, inputs);
         probe_.output<gpu::BsdfOutput>(PROBE_OUTPUT, inputs.size());

@@ -91,7 +91,7 @@ TEST_F(CheckpointState, OfAGridOfSeveralLevelsGoesOnWithTheSameBits) {
     whole.integrator.run(1);
     set_two_radii(whole);
     whole.integrator.run(2);
-    ASSERT_GE(whole.integrator.buffer(BIND_GRID).download_value<gpu::Grid>().levels, 2u);
+    ASSERT_GE(whole.integrator.buffer(Binding::grid).download_value<gpu::Grid>().levels, 2u);
     const std::vector<std::byte> state = whole.integrator.save();
     const Report report = report_of(whole);
     const auto hashes = [](Rig& rig) {
@@ -121,7 +121,7 @@ TEST_F(CheckpointState, OfAnotherSizeOrWithAnImpossibleGridIsRefused) {
         EXPECT_NE(std::string(error->what()).find(std::to_string(size)), std::string::npos) << error->what();
     }
     // The grid stands last: every cell of a larger one would be looked up past the end of the table.
-    const auto grid = rig.integrator.buffer(BIND_GRID).download_value<gpu::Grid>();
+    const auto grid = rig.integrator.buffer(Binding::grid).download_value<gpu::Grid>();
     gpu::Grid wide = grid, hashed = grid, empty = grid, flat = grid, deep = grid, shifted = grid;
     wide.dims[0].x *= 1000;
     hashed.dims[0].w = 0xffffffffu;
@@ -131,7 +131,7 @@ TEST_F(CheckpointState, OfAnotherSizeOrWithAnImpossibleGridIsRefused) {
     shifted.first[0] = 1;
     for (const gpu::Grid& wrong : {wide, hashed, empty, flat, deep, shifted}) {
         std::vector<std::byte> bad = good;
-        std::memcpy(bad.data() + bad.size() - rig.integrator.buffer(BIND_GRID).bytes(), &wrong, sizeof(wrong));
+        std::memcpy(bad.data() + bad.size() - rig.integrator.buffer(Binding::grid).bytes(), &wrong, sizeof(wrong));
         const auto error = thrown_by([&] { rig.integrator.restore(report_of(rig), bad); });
         ASSERT_TRUE(error) << wrong.dims[0].x << " x " << wrong.dims[0].y << " x " << wrong.dims[0].z << ", "
                            << wrong.entries << ", " << wrong.levels << " levels";

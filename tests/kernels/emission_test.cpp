@@ -245,18 +245,16 @@ protected:
         params.light_count = std::uint32_t(flat.lights.size());
         params.environment = {flat.environment_size.width, flat.environment_size.height};
         Probe probe("emission", emission_words, flat.bvh.stack, bits_of(flat.features));
-        probe.input(BIND_PARAMS, std::vector{params}, Buffer::Kind::uniform);
-        const auto texels = [&](std::uint32_t binding, const auto& data,
-                                Buffer::Kind kind = Buffer::Kind::uint_texels) { probe.input(binding, data, kind); };
-        texels(BIND_LIGHTS, flat.lights);
-        texels(BIND_SHADING, flat.shading);
-        texels(BIND_MATERIALS, flat.materials);
-        texels(BIND_TEXCOORDS, flat.texcoords, Buffer::Kind::float_texels);
-        texels(BIND_VERTEX_COLORS, flat.vertex_colors);
-        texels(BIND_TEXTURES, flat.textures);
-        texels(BIND_TEXELS, flat.texels, Buffer::Kind::word_texels);
-        texels(BIND_ENVIRONMENT, flat.environment, Buffer::Kind::float_texels);
-        texels(BIND_ENVIRONMENT_ALIAS, flat.environment_alias, Buffer::Kind::word_texels);
+        probe.input(Binding::params, std::vector{params});
+        probe.input(Binding::lights, flat.lights);
+        probe.input(Binding::shading, flat.shading);
+        probe.input(Binding::materials, flat.materials);
+        probe.input(Binding::texcoords, flat.texcoords);
+        probe.input(Binding::vertex_colors, flat.vertex_colors);
+        probe.input(Binding::textures, flat.textures);
+        probe.input(Binding::images, flat.images);
+        probe.input(Binding::environment, flat.environment);
+        probe.input(Binding::environment_alias, flat.environment_alias);
         probe.input(PROBE_INPUT, inputs);
         probe.output<gpu::EmitOutput>(PROBE_OUTPUT, inputs.size());
         probe.run(inputs.size(),

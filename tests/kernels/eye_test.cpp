@@ -138,9 +138,9 @@ TEST_F(Eye, PathsEndWhereTheReferenceEndsThem) {
     for (std::uint32_t iteration = 0; iteration < 3; ++iteration) {
         rig.integrator.run(1);
         const auto numbers = numbers_of(rig, iteration);
-        const auto positions = rig.all<gpu::HitPosition>(BIND_HIT_POSITION);
-        const auto weights = rig.all<gpu::HitWeight>(BIND_HIT_WEIGHT);
-        const auto emissions = rig.all<gpu::HitEmission>(BIND_HIT_EMISSION);
+        const auto positions = rig.all<gpu::HitPosition>(Binding::hit_position);
+        const auto weights = rig.all<gpu::HitWeight>(Binding::hit_weight);
+        const auto emissions = rig.all<gpu::HitEmission>(Binding::hit_emission);
         for (std::uint32_t i = 0; i < rig.pixels(); ++i) {
             const Path path = follow(rig, uploaded, bvh, i, numbers[i]);
             if (path.delicate) {
@@ -206,7 +206,7 @@ TEST_F(Eye, JitterCoversThePixelOverIterations) {
     const int iterations = 64;
     for (int iteration = 0; iteration < iterations; ++iteration) {
         rig.integrator.run(1);
-        const auto positions = rig.all<gpu::HitPosition>(BIND_HIT_POSITION);
+        const auto positions = rig.all<gpu::HitPosition>(Binding::hit_position);
         for (std::uint32_t i = 0; i < rig.pixels(); ++i) {
             const glm::dvec3 p = glm::dvec3(positions[i].position) / rig.flat.frame.scale + rig.flat.frame.centre;
             const glm::dvec2 film((p.x / (half * 1.5) + 1.0) * 1.5, (1.0 - p.y / half) * 1.0);

@@ -43,10 +43,10 @@ struct PhotonSet {
 };
 
 PhotonSet photons_of(Rig& rig) {
-    const auto counters = rig.all<std::uint32_t>(BIND_COUNTERS);
-    const std::size_t count = counters[rig.integrator.buffer(BIND_GRID).download_value<gpu::Grid>().entries];
-    const auto sorted = rig.all<gpu::Photon>(BIND_SORTED);
-    const auto flux = rig.all<gpu::PhotonFlux>(BIND_SORTED_FLUX);
+    const auto counters = rig.all<std::uint32_t>(Binding::counters);
+    const std::size_t count = counters[rig.integrator.buffer(Binding::grid).download_value<gpu::Grid>().entries];
+    const auto sorted = rig.all<gpu::Photon>(Binding::sorted);
+    const auto flux = rig.all<gpu::PhotonFlux>(Binding::sorted_flux);
     PhotonSet set;
     for (std::size_t i = 0; i < count; ++i) {
         set.photons.push_back(
@@ -111,7 +111,7 @@ protected:
         if (cells > 0) params.cells = cells;
         rig.integrator.set_params(params);
         rig.integrator.run(1);
-        const bool hashed = rig.integrator.buffer(BIND_GRID).download_value<gpu::Grid>().dims[0].w != 0;
+        const bool hashed = rig.integrator.buffer(Binding::grid).download_value<gpu::Grid>().dims[0].w != 0;
         ASSERT_EQ(hashed, cells > 0);
     }
 };
@@ -127,11 +127,11 @@ TEST_F(Gather, StartingRadiusIsTheDistanceOfTheKthNearestPhoton) {
         params.radius_floor *= 0.5f;
         rig.integrator.set_params(params);
         run(rig, cells);
-        const auto hits = rig.all<gpu::HitPosition>(BIND_HIT_POSITION);
-        const auto weights = rig.all<gpu::HitWeight>(BIND_HIT_WEIGHT);
-        const auto emission = rig.all<gpu::HitEmission>(BIND_HIT_EMISSION);
-        const auto pixels = rig.all<gpu::PixelState>(BIND_PIXELS);
-        const auto gathered = rig.all<gpu::Gathered>(BIND_GATHERED);
+        const auto hits = rig.all<gpu::HitPosition>(Binding::hit_position);
+        const auto weights = rig.all<gpu::HitWeight>(Binding::hit_weight);
+        const auto emission = rig.all<gpu::HitEmission>(Binding::hit_emission);
+        const auto pixels = rig.all<gpu::PixelState>(Binding::pixels);
+        const auto gathered = rig.all<gpu::Gathered>(Binding::gathered);
         const PhotonSet set = photons_of(rig);
         std::size_t seeded = 0, capped = 0, doubts = 0;
         for (std::size_t i = 0; i < rig.pixels(); ++i) {
@@ -171,12 +171,12 @@ TEST_F(Gather, StartingRadiusIsTheDistanceOfTheKthNearestPhoton) {
 TEST_F(Gather, APixelThatFoundTooFewPhotonsTriesAgain) {
     Rig rig(room(), settings_of("cppm", 400));
     rig.integrator.run(1);
-    const auto before = rig.all<gpu::PixelState>(BIND_PIXELS);
+    const auto before = rig.all<gpu::PixelState>(Binding::pixels);
     const std::uint32_t unseeded =
         std::uint32_t(std::count_if(before.begin(), before.end(), [](const auto& p) { return p.seeded == 0; }));
     ASSERT_GT(unseeded, 0u) << "the scene is to leave pixels without k photons";
     rig.integrator.run(30);
-    const auto after = rig.all<gpu::PixelState>(BIND_PIXELS);
+    const auto after = rig.all<gpu::PixelState>(Binding::pixels);
     std::uint32_t still = 0;
     for (std::size_t i = 0; i < after.size(); ++i) {
         still += after[i].seeded == 0 ? 1 : 0;
@@ -188,7 +188,7 @@ TEST_F(Gather, APixelThatFoundTooFewPhotonsTriesAgain) {
 
 /// Radii of every size, some smaller than a photon's distance and some larger than a wall.
 std::vector<gpu::PixelState> random_radii(Rig& rig, std::uint32_t seed) {
-    auto pixels = rig.all<gpu::PixelState>(BIND_PIXELS);
+    auto pixels = rig.all<gpu::PixelState>(Binding::pixels);
     pixels.resize(rig.pixels());
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> exponent(-3.0f, -0.5f);
@@ -211,15 +211,15 @@ TEST_F(Gather, SumsCountsAndTalliesAreThoseOfAllPhotons) {
         run(rig, c.cells);
         // The same photons again, with radii of our own and an empty tally.
         const auto states = random_radii(rig, 15);
-        rig.integrator.buffer(BIND_PIXELS).upload(states);
+        rig.integrator.buffer(Binding::pixels).upload(states);
         const std::uint32_t bins = c.rings * c.sectors;
-        rig.integrator.buffer(BIND_TALLY).upload(std::vector<std::uint32_t>(bins * rig.pixels()));
+        rig.integrator.buffer(Binding::tally).upload(std::vector<std::uint32_t>(bins * rig.pixels()));
         gather(rig);
 
-        const auto hits = rig.all<gpu::HitPosition>(BIND_HIT_POSITION);
-        const auto weights = rig.all<gpu::HitWeight>(BIND_HIT_WEIGHT);
-        const auto gathered = rig.all<gpu::Gathered>(BIND_GATHERED);
-        const auto tally = rig.all<std::uint32_t>(BIND_TALLY);
+        const auto hits = rig.all<gpu::HitPosition>(Binding::hit_position);
+        const auto weights = rig.all<gpu::HitWeight>(Binding::hit_weight);
+        const auto gathered = rig.all<gpu::Gathered>(Binding::gathered);
+        const auto tally = rig.all<std::uint32_t>(Binding::tally);
         PhotonSet set = photons_of(rig);
         const std::vector<reference::Photon> plain = set.photons;
         std::size_t photons = 0, doubtful_pixels = 0, doubtful_cells = 0, smooth = 0;
@@ -292,12 +292,12 @@ TEST_F(Gather, AFoldedTallyAddsOppositeSectors) {
     Rig plain(room(), settings_of("cppm", 2400)), folded(room(), settings_of("cppm-fold", 2400));
     for (Rig* rig : {&plain, &folded}) {
         rig->integrator.run(1);
-        rig->integrator.buffer(BIND_PIXELS).upload(random_radii(*rig, 16));
-        const std::size_t words = rig->integrator.buffer(BIND_TALLY).bytes() / 4;
-        rig->integrator.buffer(BIND_TALLY).upload(std::vector<std::uint32_t>(words));
+        rig->integrator.buffer(Binding::pixels).upload(random_radii(*rig, 16));
+        const std::size_t words = rig->integrator.buffer(Binding::tally).bytes() / 4;
+        rig->integrator.buffer(Binding::tally).upload(std::vector<std::uint32_t>(words));
         gather(*rig);
     }
-    const auto whole = plain.all<std::uint32_t>(BIND_TALLY), halves = folded.all<std::uint32_t>(BIND_TALLY);
+    const auto whole = plain.all<std::uint32_t>(Binding::tally), halves = folded.all<std::uint32_t>(Binding::tally);
     const std::size_t p = plain.pixels();
     ASSERT_EQ(whole.size(), 12 * p);
     ASSERT_EQ(halves.size(), 6 * p);

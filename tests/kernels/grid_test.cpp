@@ -53,7 +53,7 @@ protected:
         rig.integrator.set_params(params);
         rig.integrator.run(1);
         params = rig.integrator.params();
-        const gpu::Grid grid = rig.integrator.buffer(BIND_GRID).download_value<gpu::Grid>();
+        const gpu::Grid grid = rig.integrator.buffer(Binding::grid).download_value<gpu::Grid>();
         ASSERT_EQ(grid.levels, 1u);
         const glm::uvec4& dims = grid.dims[0];
         ASSERT_EQ(dims.w != 0, hashed) << dims.x << " x " << dims.y << " x " << dims.z << " cells of " << grid.cell[0]
@@ -72,8 +72,8 @@ protected:
     /// Compares the sorted photons and the table of cell starts with the host's.
     static void expect_order(Rig& rig, const gpu::Grid& grid) {
         // Path by path and bounce by bounce.
-        const auto photons = rig.all<gpu::Photon>(BIND_PHOTONS);
-        const auto fluxes = rig.all<gpu::PhotonFlux>(BIND_PHOTON_FLUX);
+        const auto photons = rig.all<gpu::Photon>(Binding::photons);
+        const auto fluxes = rig.all<gpu::PhotonFlux>(Binding::photon_flux);
         struct Entry {
             std::uint32_t cell;
             std::size_t slot;
@@ -90,8 +90,8 @@ protected:
         std::stable_sort(entries.begin(), entries.end(),
                          [](const Entry& a, const Entry& b) { return a.cell < b.cell; });
 
-        const auto sorted = rig.all<gpu::Photon>(BIND_SORTED);
-        const auto sorted_flux = rig.all<gpu::PhotonFlux>(BIND_SORTED_FLUX);
+        const auto sorted = rig.all<gpu::Photon>(Binding::sorted);
+        const auto sorted_flux = rig.all<gpu::PhotonFlux>(Binding::sorted_flux);
         for (std::size_t i = 0; i < entries.size(); ++i) {
             ASSERT_EQ(std::memcmp(&sorted[i], &photons[entries[i].slot], sizeof(gpu::Photon)), 0)
                 << "place " << i << " of " << entries.size() << ", slot " << entries[i].slot << ", cell "
@@ -99,7 +99,7 @@ protected:
             ASSERT_EQ(std::memcmp(&sorted_flux[i], &fluxes[entries[i].slot], sizeof(gpu::PhotonFlux)), 0)
                 << "place " << i << ", slot " << entries[i].slot;
         }
-        const auto counters = rig.all<std::uint32_t>(BIND_COUNTERS);
+        const auto counters = rig.all<std::uint32_t>(Binding::counters);
         std::size_t next = 0, occupied = 0;
         for (std::uint32_t cell = 0; cell < grid.entries; ++cell) {
             ASSERT_EQ(counters[cell], next) << "start of cell " << cell << " of " << grid.entries;
@@ -140,7 +140,7 @@ TEST_F(GridOrder, EveryLevelHoldsThePhotonsInOrder) {
     rig.integrator.run(1);
     set_two_radii(rig);
     rig.integrator.run(2);
-    const auto grid = rig.integrator.buffer(BIND_GRID).download_value<gpu::Grid>();
+    const auto grid = rig.integrator.buffer(Binding::grid).download_value<gpu::Grid>();
     ASSERT_GE(grid.levels, 2u);
     for (std::uint32_t level = 1; level < grid.levels; ++level) {
         EXPECT_GT(grid.cell[level], grid.cell[level - 1]);
@@ -153,7 +153,7 @@ TEST_F(GridOrder, PlansFromTheRadiiInForce) {
     Rig rig(room(), small(4096));
     rig.integrator.run(2);  // plans before iterations 0, 1 and 2: the radii were counted after iteration 1
     std::uint32_t diffuse = 0;
-    for (const auto& hit : rig.all<gpu::HitPosition>(BIND_HIT_POSITION))
+    for (const auto& hit : rig.all<gpu::HitPosition>(Binding::hit_position))
         diffuse += (hit.state & HIT_MASK) == HIT_DIFFUSE ? 1 : 0;
     const gpu::Status status = rig.status();
     std::uint32_t counted = 0;
@@ -163,13 +163,13 @@ TEST_F(GridOrder, PlansFromTheRadiiInForce) {
     for (int bin = 0; bin < RADIUS_BINS; ++bin) {
         photons += (std::uint64_t(status.photon_histogram_high[bin]) << 32) + status.photon_histogram[bin];
     }
-    for (const auto& found : rig.all<gpu::Gathered>(BIND_GATHERED)) gathered += found.count;
+    for (const auto& found : rig.all<gpu::Gathered>(Binding::gathered)) gathered += found.count;
     EXPECT_EQ(photons, gathered) << "photons in the histogram, and in the discs";
 }
 
 TEST_F(GridOrder, ExclusiveScanOfAnyRange) {
     Rig rig(bare_room(0.5f), small(4096));
-    const std::size_t words = rig.integrator.buffer(BIND_COUNTERS).bytes() / 4;
+    const std::size_t words = rig.integrator.buffer(Binding::counters).bytes() / 4;
     const gpu::Params& params = rig.integrator.params();
     std::mt19937 random(14);
     const std::uint32_t limit = params.cells + 1 + 2 * params.photons + 1 + params.sort_lanes * 64;
@@ -183,15 +183,15 @@ TEST_F(GridOrder, ExclusiveScanOfAnyRange) {
         const std::uint32_t count = offset == 0 ? std::min(asked, entries + 1) : asked;
         gpu::Grid grid{};
         grid.entries = entries;
-        rig.integrator.buffer(BIND_GRID).upload_value(grid);
+        rig.integrator.buffer(Binding::grid).upload_value(grid);
         std::vector<std::uint32_t> values(words);
         for (auto& value : values) value = random() % 200000u;  // the largest sums wrap, here as there
-        rig.integrator.buffer(BIND_COUNTERS).upload(values);
+        rig.integrator.buffer(Binding::counters).upload(values);
         const gpu::Launch launch{.iteration = 0, .round = 0, .last_round = 1, .offset = offset, .count = asked};
         rig.integrator.run_kernel("scan_sums", 4096, launch);
         rig.integrator.run_kernel("scan_blocks", 64, launch);
         rig.integrator.run_kernel("scan_apply", 4096, launch);
-        const auto scanned = rig.all<std::uint32_t>(BIND_COUNTERS);
+        const auto scanned = rig.all<std::uint32_t>(Binding::counters);
         std::uint32_t running = 0;
         for (std::uint32_t i = 0; i < limit; ++i) {
             const bool inside = i >= offset && i < offset + count;

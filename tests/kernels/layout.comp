@@ -3,13 +3,14 @@
 // struct, and writes the sums to elements 2 and 3; the uniform block and the push constants go to element 4.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/types.h"
-#include "shared/bindings.h"
+#include "shared/buffers.h"
+#include "include/records.glsl"
 #include "shared/estimators.h"
 #include "layout_members.h"
 
 layout(local_size_x_id = SPEC_WORKGROUP) in;
 layout(push_constant, scalar) uniform LaunchBlock { Launch launch; };
-layout(binding = BIND_PARAMS, scalar) uniform ParamsBlock { Params params; };
+PARAMS(UNIFORM)
 
 uint ordinal;
 
@@ -45,30 +46,31 @@ void bump(inout LightRay value) { MEMBERS_LIGHT_RAY }
 #define ROUND_TRIP(Struct, values, MEMBERS) \
     for (uint e = 0u; e < 2u; ++e) BUMP(Struct, values[e], values[e + 2u], MEMBERS)
 
-BLOCK(BIND_FIRST_STORAGE + 0, BvhNodeBlock, BvhNode, bvh_nodes)
-BLOCK(BIND_FIRST_STORAGE + 1, TriangleGeometryBlock, TriangleGeometry, triangle_geometries)
-BLOCK(BIND_FIRST_STORAGE + 2, TriangleShadingBlock, TriangleShading, triangle_shadings)
-BLOCK(BIND_FIRST_STORAGE + 3, SurfaceMaterialBlock, SurfaceMaterial, surface_materials)
-BLOCK(BIND_FIRST_STORAGE + 4, LightBlock, Light, lights)
-BLOCK(BIND_FIRST_STORAGE + 5, PhotonBlock, Photon, photons)
-BLOCK(BIND_FIRST_STORAGE + 6, PhotonFluxBlock, PhotonFlux, photon_fluxes)
-BLOCK(BIND_FIRST_STORAGE + 7, HitPositionBlock, HitPosition, hit_positions)
-BLOCK(BIND_FIRST_STORAGE + 8, HitWeightBlock, HitWeight, hit_weights)
-BLOCK(BIND_FIRST_STORAGE + 9, HitEmissionBlock, HitEmission, hit_emissions)
-BLOCK(BIND_FIRST_STORAGE + 10, GatheredBlock, Gathered, gathereds)
-BLOCK(BIND_FIRST_STORAGE + 11, PixelStateBlock, PixelState, pixel_states)
-BLOCK(BIND_FIRST_STORAGE + 12, AovsBlock, Aovs, aovs)
-BLOCK(BIND_FIRST_STORAGE + 13, FilmBlock, Film, films)
-BLOCK(BIND_FIRST_STORAGE + 14, PathStateBlock, PathState, path_states)
-BLOCK(BIND_FIRST_STORAGE + 15, CursorBlock, Cursor, cursors)
-BLOCK(BIND_FIRST_STORAGE + 16, GridBlock, Grid, grids)
-BLOCK(BIND_FIRST_STORAGE + 17, StatusBlock, Status, statuses)
-BLOCK(BIND_FIRST_STORAGE + 18, ParamsArrayBlock, Params, params_array)
-BLOCK(BIND_FIRST_STORAGE + 19, LaunchArrayBlock, Launch, launches)
-BLOCK(BIND_FIRST_STORAGE + 20, TextureLookupBlock, TextureLookup, texture_lookups)
-BLOCK(BIND_FIRST_STORAGE + 21, HitSurfaceBlock, HitSurface, hit_surfaces)
-BLOCK(BIND_FIRST_STORAGE + 22, TraceStateBlock, TraceState, trace_states)
-BLOCK(BIND_FIRST_STORAGE + 23, LightRayBlock, LightRay, light_rays)
+#define FIRST HIT_POSITION(BINDING_NUMBER)
+BLOCK(FIRST + 0, BvhNodeBlock, BvhNode, bvh_nodes)
+BLOCK(FIRST + 1, TriangleGeometryBlock, TriangleGeometry, triangle_geometries)
+BLOCK(FIRST + 2, TriangleShadingBlock, TriangleShading, triangle_shadings)
+BLOCK(FIRST + 3, SurfaceMaterialBlock, SurfaceMaterial, surface_materials)
+BLOCK(FIRST + 4, LightBlock, Light, lights)
+BLOCK(FIRST + 5, PhotonBlock, Photon, photons)
+BLOCK(FIRST + 6, PhotonFluxBlock, PhotonFlux, photon_fluxes)
+BLOCK(FIRST + 7, HitPositionBlock, HitPosition, hit_positions)
+BLOCK(FIRST + 8, HitWeightBlock, HitWeight, hit_weights)
+BLOCK(FIRST + 9, HitEmissionBlock, HitEmission, hit_emissions)
+BLOCK(FIRST + 10, GatheredBlock, Gathered, gathereds)
+BLOCK(FIRST + 11, PixelStateBlock, PixelState, pixel_states)
+BLOCK(FIRST + 12, AovsBlock, Aovs, aovs)
+BLOCK(FIRST + 13, FilmBlock, Film, films)
+BLOCK(FIRST + 14, PathStateBlock, PathState, path_states)
+BLOCK(FIRST + 15, CursorBlock, Cursor, cursors)
+BLOCK(FIRST + 16, GridBlock, Grid, grids)
+BLOCK(FIRST + 17, StatusBlock, Status, statuses)
+BLOCK(FIRST + 18, ParamsArrayBlock, Params, params_array)
+BLOCK(FIRST + 19, LaunchArrayBlock, Launch, launches)
+BLOCK(FIRST + 20, TextureLookupBlock, TextureLookup, texture_lookups)
+BLOCK(FIRST + 21, HitSurfaceBlock, HitSurface, hit_surfaces)
+BLOCK(FIRST + 22, TraceStateBlock, TraceState, trace_states)
+BLOCK(FIRST + 23, LightRayBlock, LightRay, light_rays)
 
 void main() {
     if (gl_GlobalInvocationID.x != 0u) return;

@@ -72,9 +72,12 @@ template <typename S> S bumped(S value) {
     return value;
 }
 
+/// Of the storage buffers that stand together, the one that block `index` of layout.comp is bound to.
+Binding block(std::uint32_t index) { return Binding(std::uint32_t(Binding::hit_position) + index); }
+
 class Layout : public GpuTest {
 protected:
-    template <typename S> void upload(std::uint32_t binding) {
+    template <typename S> void upload(Binding binding) {
         probe_.input(binding, std::vector<S>{distinct<S>(0), distinct<S>(1), S{}, S{}, S{}});
     }
 
@@ -88,7 +91,7 @@ protected:
         });
     }
 
-    template <typename S> void check(std::uint32_t binding, const char* name) {
+    template <typename S> void check(Binding binding, const char* name) {
         std::size_t listed = 0;
         S value{};
         each_scalar(value, [&](auto&) { ++listed; });
@@ -113,16 +116,16 @@ protected:
 // clang-format on
 
 TEST_F(Layout, EveryMemberStandsWhereTheHostPutsIt) {
-#define UPLOAD(index, Struct) upload<gpu::Struct>(BIND_FIRST_STORAGE + index);
+#define UPLOAD(index, Struct) upload<gpu::Struct>(block(index));
     FOR_STRUCTS(UPLOAD)
     const auto params = distinct<gpu::Params>(7);
-    probe_.input(BIND_PARAMS, std::vector{params}, Buffer::Kind::uniform);
+    probe_.input(Binding::params, std::vector{params});
     const auto launch = distinct<gpu::Launch>(8);
     probe_.run(1, launch);
-#define CHECK(index, Struct) check<gpu::Struct>(BIND_FIRST_STORAGE + index, #Struct);
+#define CHECK(index, Struct) check<gpu::Struct>(block(index), #Struct);
     FOR_STRUCTS(CHECK)
-    expect_equal("uniform Params", probe_.result<gpu::Params>(BIND_FIRST_STORAGE + 18, 5)[4], bumped(params));
-    expect_equal("push constants", probe_.result<gpu::Launch>(BIND_FIRST_STORAGE + 19, 5)[4], bumped(launch));
+    expect_equal("uniform Params", probe_.result<gpu::Params>(block(18), 5)[4], bumped(params));
+    expect_equal("push constants", probe_.result<gpu::Launch>(block(19), 5)[4], bumped(launch));
 }
 
 }  // namespace

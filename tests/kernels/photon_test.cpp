@@ -26,8 +26,8 @@ struct Stored {
 
 /// Photons by path.
 std::vector<std::vector<Stored>> stored_photons(Rig& rig) {
-    const auto photons = rig.all<gpu::Photon>(BIND_PHOTONS);
-    const auto fluxes = rig.all<gpu::PhotonFlux>(BIND_PHOTON_FLUX);
+    const auto photons = rig.all<gpu::Photon>(Binding::photons);
+    const auto fluxes = rig.all<gpu::PhotonFlux>(Binding::photon_flux);
     std::vector<std::vector<Stored>> paths;
     for (const StoredPath& path : rig.stored_paths()) {
         paths.emplace_back();

@@ -2,15 +2,21 @@
 // there after include/kernel.glsl.
 #ifdef __cplusplus
 #pragma once
-#include "shared/bindings.h"
 #include "shared/types.h"
+#include "vk/binding.h"
 namespace vkcppm::gpu {
 #endif
 
 // Storage bindings that no header under test declares.
-#define PROBE_INPUT BIND_PATHS
-#define PROBE_OUTPUT BIND_IMAGE
-#define PROBE_VIEW BIND_GRID
+#ifdef __cplusplus
+inline constexpr Binding PROBE_INPUT = Binding::paths;
+inline constexpr Binding PROBE_OUTPUT = Binding::image;
+inline constexpr Binding PROBE_VIEW = Binding::grid;
+#else
+#define PROBE_INPUT PATHS(BINDING_NUMBER)
+#define PROBE_OUTPUT IMAGE(BINDING_NUMBER)
+#define PROBE_VIEW GRID(BINDING_NUMBER)
+#endif
 
 struct RngKey {
     uint seed;

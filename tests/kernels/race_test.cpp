@@ -48,10 +48,10 @@ TEST_F(Race, SeedsGiveAllEstimatorsTheSamePhotonsAndFirstRadii) {
         SCOPED_TRACE(name);
         Rig rig(test::project_scene("torus"), small(name), test::plain_device());
         rig.integrator.run(1);
-        const std::vector<float> found = rig.all<float>(BIND_NEAREST);
+        const std::vector<float> found = rig.all<float>(Binding::nearest);
         rig.integrator.run(4);
-        std::vector<std::uint32_t> stored = rig.all<std::uint32_t>(BIND_PHOTONS);
-        const std::vector<std::uint32_t> flux = rig.all<std::uint32_t>(BIND_PHOTON_FLUX);
+        std::vector<std::uint32_t> stored = rig.all<std::uint32_t>(Binding::photons);
+        const std::vector<std::uint32_t> flux = rig.all<std::uint32_t>(Binding::photon_flux);
         stored.insert(stored.end(), flux.begin(), flux.end());
         if (photons.empty()) {
             nearest = found;

@@ -62,7 +62,7 @@ TEST_P(Resume, SmallStepBudgetsGiveTheSameBits) {
     }
     EXPECT_EQ(differences(whole.integrator.resolve(), cut.integrator.resolve()), 0u)
         << "of " << whole.pixels() << " pixels";
-    const auto a = whole.all<gpu::PixelState>(BIND_PIXELS), b = cut.all<gpu::PixelState>(BIND_PIXELS);
+    const auto a = whole.all<gpu::PixelState>(Binding::pixels), b = cut.all<gpu::PixelState>(Binding::pixels);
     for (std::size_t i = 0; i < a.size(); ++i) {
         ASSERT_EQ(std::memcmp(&a[i], &b[i], sizeof(a[i])), 0)
             << "pixel " << i << ": radius^2 " << a[i].radius2 << " and " << b[i].radius2 << ", total " << a[i].total
@@ -134,7 +134,7 @@ TEST_F(Determinism, EveryFormOfTheKernelsGivesTheSameBits) {
     const std::vector<std::vector<KernelForm>> several = {
         {{16, false}}, {{256, false}}, {{64, true}}, {{64, false}, {64, true}, {16, false}}};
     for (const std::vector<KernelForm>& forms : several) {
-        Integrator other(plain_device(), whole.flat, whole.scene.cameras.at(0), whole.settings, forms);
+        Integrator other(whole.on_device, whole.scene.cameras.at(0), whole.settings, forms);
         other.run(iterations);
         const std::string name = fmt::format("{} forms, {} first", forms.size(), text_of(forms.front()));
         EXPECT_EQ(differences(whole.integrator.resolve(), other.resolve()), 0u)
@@ -146,7 +146,7 @@ TEST_F(Determinism, EveryFormOfTheKernelsGivesTheSameBits) {
 TEST_F(Determinism, FormsAreMeasuredWhileTheyRenderAndThenOneIsKept) {
     Rig whole(room(), settings_of("cppm"), plain_device());
     const std::vector<KernelForm> forms = {{64, false}, {64, true}, {16, false}};
-    Integrator other(plain_device(), whole.flat, whole.scene.cameras.at(0), whole.settings, forms);
+    Integrator other(whole.on_device, whole.scene.cameras.at(0), whole.settings, forms);
     const auto form_of_photon = [&] {
         Report report;
         other.fill(report);

@@ -74,7 +74,7 @@ Range reflectance_range(double cosine, double ior_ratio) {
 class Specular : public GpuTest {
 protected:
     std::vector<gpu::ScatterOutput> scatter(const std::vector<gpu::ScatterInput>& inputs) {
-        probe_.input(BIND_MATERIALS, materials(), Buffer::Kind::uint_texels);
+        probe_.input(Binding::materials, materials());
         probe_.input(PROBE_INPUT, inputs);
         probe_.output<gpu::ScatterOutput>(PROBE_OUTPUT, inputs.size());
         probe_.run(inputs.size(),

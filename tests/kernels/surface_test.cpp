@@ -58,9 +58,9 @@ TEST_F(SurfaceAtHit, LiesOnItsPlaneAndFacesTheRay) {
             rays.push_back({origin, glm::normalize(glm::vec3(place(random), place(random), place(random)))});
         }
         Probe probe("surface", surface_words, flat.bvh.stack);
-        probe.input(BIND_NODES, flat.bvh.nodes, Buffer::Kind::uint_texels);
-        probe.input(BIND_TRIANGLES, flat.triangles, Buffer::Kind::float_texels);
-        probe.input(BIND_SHADING, flat.shading, Buffer::Kind::uint_texels);
+        probe.input(Binding::nodes, flat.bvh.nodes);
+        probe.input(Binding::triangles, flat.triangles);
+        probe.input(Binding::shading, flat.shading);
         probe.input(PROBE_INPUT, rays);
         probe.output<gpu::SurfaceOutput>(PROBE_OUTPUT, rays.size());
         probe.run(rays.size(),

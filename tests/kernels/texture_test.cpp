@@ -56,14 +56,14 @@ protected:
     static std::vector<gpu::TextureOutput> run(const FlatScene& flat, const std::vector<gpu::TextureInput>& inputs,
                                                bool surfaces) {
         Probe probe("texture", texture_words, flat.bvh.stack, bits_of(flat.features));
-        probe.input(BIND_TRIANGLES, flat.triangles, Buffer::Kind::float_texels);
-        probe.input(BIND_SHADING, flat.shading, Buffer::Kind::uint_texels);
-        probe.input(BIND_MATERIALS, flat.materials, Buffer::Kind::uint_texels);
-        probe.input(BIND_TEXCOORDS, flat.texcoords, Buffer::Kind::float_texels);
-        probe.input(BIND_VERTEX_COLORS, flat.vertex_colors, Buffer::Kind::uint_texels);
-        probe.input(BIND_TANGENTS, flat.tangents, Buffer::Kind::uint_texels);
-        probe.input(BIND_TEXTURES, flat.textures, Buffer::Kind::uint_texels);
-        probe.input(BIND_TEXELS, flat.texels, Buffer::Kind::word_texels);
+        probe.input(Binding::triangles, flat.triangles);
+        probe.input(Binding::shading, flat.shading);
+        probe.input(Binding::materials, flat.materials);
+        probe.input(Binding::texcoords, flat.texcoords);
+        probe.input(Binding::vertex_colors, flat.vertex_colors);
+        probe.input(Binding::tangents, flat.tangents);
+        probe.input(Binding::textures, flat.textures);
+        probe.input(Binding::images, flat.images);
         probe.input(PROBE_INPUT, inputs);
         probe.output<gpu::TextureOutput>(PROBE_OUTPUT, inputs.size());
         probe.run(inputs.size(), {.iteration = 0,

@@ -126,8 +126,8 @@ protected:
     std::vector<gpu::RayOutput> trace(const FlatScene& flat, const std::vector<gpu::RayInput>& rays,
                                       std::uint32_t node_bits = 20) {
         Probe probe("trace", trace_words, flat.bvh.stack, ~0u, node_bits);
-        probe.input(BIND_NODES, flat.bvh.nodes, Buffer::Kind::uint_texels);
-        probe.input(BIND_TRIANGLES, flat.triangles, Buffer::Kind::float_texels);
+        probe.input(Binding::nodes, flat.bvh.nodes);
+        probe.input(Binding::triangles, flat.triangles);
         probe.input(PROBE_INPUT, rays);
         probe.output<gpu::RayOutput>(PROBE_OUTPUT, rays.size());
         probe.run(
@@ -395,8 +395,8 @@ TEST_F(Trace, OutOfStepsSaysSo) {
     add_sphere(scene, {0, 0, 0}, 1.0, 4, add_diffuse(scene, glm::vec3(0.5f)), false);
     const FlatScene flat = flatten(scene);
     Probe probe("trace", trace_words, flat.bvh.stack);
-    probe.input(BIND_NODES, flat.bvh.nodes, Buffer::Kind::uint_texels);
-    probe.input(BIND_TRIANGLES, flat.triangles, Buffer::Kind::float_texels);
+    probe.input(Binding::nodes, flat.bvh.nodes);
+    probe.input(Binding::triangles, flat.triangles);
     Random random(12);
     std::vector<gpu::RayInput> rays(2000);
     for (auto& ray : rays) ray = {glm::vec3(in_box(random, 0.2)), glm::vec3(glm::normalize(in_box(random, 1.0)))};

@@ -139,14 +139,14 @@ TEST_P(Update, DecidesAsTheReference) {
             for (std::size_t bin = 0; !tally.empty() && bin < state.tally.size(); ++bin)
                 tally[bin * pixels + i] = state.tally[bin];
         }
-        rig.integrator.buffer(BIND_PIXELS).upload(pixel_states);
-        rig.integrator.buffer(BIND_GATHERED).upload(gathered);
-        rig.integrator.buffer(BIND_HIT_POSITION).upload(hits);
-        rig.integrator.buffer(BIND_TALLY).upload(tally);
+        rig.integrator.buffer(Binding::pixels).upload(pixel_states);
+        rig.integrator.buffer(Binding::gathered).upload(gathered);
+        rig.integrator.buffer(Binding::hit_position).upload(hits);
+        rig.integrator.buffer(Binding::tally).upload(tally);
         rig.integrator.run_kernel("update", pixels,
                                   {.iteration = 0, .round = 0, .last_round = 1, .offset = 0, .count = 0});
-        const auto after = rig.all<gpu::PixelState>(BIND_PIXELS);
-        const auto tally_after = rig.all<std::uint32_t>(BIND_TALLY);
+        const auto after = rig.all<gpu::PixelState>(Binding::pixels);
+        const auto tally_after = rig.all<std::uint32_t>(Binding::tally);
 
         std::size_t undecided = 0;
         std::map<double, std::size_t> factors;
@@ -254,16 +254,16 @@ TEST_F(FilmSum, AddsTheEstimateWithTheRadiusBeforeTheUpdate) {
                 ? 1
                 : 0;
     }
-    rig.integrator.buffer(BIND_FILM).upload(films);
-    rig.integrator.buffer(BIND_HIT_POSITION).upload(hits);
-    rig.integrator.buffer(BIND_HIT_WEIGHT).upload(weights);
-    rig.integrator.buffer(BIND_HIT_EMISSION).upload(emissions);
-    rig.integrator.buffer(BIND_GATHERED).upload(gathered);
-    rig.integrator.buffer(BIND_PIXELS).upload(states);
+    rig.integrator.buffer(Binding::film).upload(films);
+    rig.integrator.buffer(Binding::hit_position).upload(hits);
+    rig.integrator.buffer(Binding::hit_weight).upload(weights);
+    rig.integrator.buffer(Binding::hit_emission).upload(emissions);
+    rig.integrator.buffer(Binding::gathered).upload(gathered);
+    rig.integrator.buffer(Binding::pixels).upload(states);
     rig.integrator.run_kernel("update", rig.pixels(),
                               {.iteration = 0, .round = 0, .last_round = 1, .offset = 1, .count = 0});
-    const auto after = rig.all<gpu::Film>(BIND_FILM);
-    const auto pixels = rig.all<gpu::PixelState>(BIND_PIXELS);
+    const auto after = rig.all<gpu::Film>(Binding::film);
+    const auto pixels = rig.all<gpu::PixelState>(Binding::pixels);
     for (std::size_t i = 0; i < rig.pixels(); ++i) {
         const bool diffuse = hits[i].state == HIT_DIFFUSE;
         const bool finite = !diffuse || (std::isfinite(gathered[i].flux.x) && std::isfinite(gathered[i].flux.y) &&
@@ -306,24 +306,17 @@ TEST_F(FilmSum, ManyAdditionsDoNotStagnate) {
     params.photons = 1;
     params.inverse_paths = 1.0f;
     params.alpha = 0.5f;
-    Buffer parameters(plain_device(), "parameters", sizeof(params), Buffer::Kind::uniform);
+    Buffer parameters(plain_device(), Binding::params, sizeof(params));
     parameters.upload_value(params);
     Bindings bindings(plain_device());
-    bindings.bind(BIND_PARAMS, parameters);
-    std::map<std::uint32_t, Buffer> buffers;
-    using Kind = Buffer::Kind;
-    const auto add = [&](std::uint32_t binding, Kind kind) -> Buffer& {
-        Buffer& buffer = buffers.emplace(binding, Buffer(plain_device(), "film test", 4096, kind)).first->second;
-        bindings.bind(binding, buffer);
-        if (const auto texels = texels_over(binding)) bindings.bind(*texels, buffer);
-        return buffer;
-    };
-    for (const std::uint32_t binding : {BIND_STATUS, BIND_QUANTILES}) add(binding, Kind::storage);
-    for (const std::uint32_t binding : {BIND_HIT_POSITION, BIND_HIT_WEIGHT, BIND_GATHERED, BIND_PIXELS}) {
-        add(binding, Kind::uint_texels);
+    bindings.bind(Binding::params, parameters);
+    std::map<Binding, Buffer> buffers;
+    for (const Binding binding :
+         {Binding::status, Binding::quantiles, Binding::hit_position, Binding::hit_weight, Binding::hit_emission,
+          Binding::gathered, Binding::pixels, Binding::tally, Binding::moments, Binding::film}) {
+        bindings.bind(binding, buffers.emplace(binding, Buffer(plain_device(), binding, 4096)).first->second);
     }
-    for (const std::uint32_t binding : {BIND_TALLY, BIND_MOMENTS, BIND_FILM}) add(binding, Kind::word_texels);
-    Buffer& emission = add(BIND_HIT_EMISSION, Kind::uint_texels);
+    Buffer& emission = buffers.at(Binding::hit_emission);
     const auto set = [&](const std::vector<float>& values) {
         std::vector<gpu::HitEmission> records;
         for (const float value : values) records.push_back({glm::vec3(value, 2.0f * value, 0.7f * value), 0.0f});
@@ -343,7 +336,7 @@ TEST_F(FilmSum, ManyAdditionsDoNotStagnate) {
     run(1);
     set(then);
     for (std::uint64_t done = 1; done < additions; done += burst) run(std::min(burst, additions - done));
-    const auto films = buffers.at(BIND_FILM).download<gpu::Film>(count);
+    const auto films = buffers.at(Binding::film).download<gpu::Film>(count);
     for (std::uint32_t i = 0; i < count; ++i) {
         for (int c = 0; c < 3; ++c) {
             const float factor = c == 0 ? 1.0f : c == 1 ? 2.0f : 0.7f;
@@ -363,7 +356,7 @@ TEST_F(FilmSum, ThePictureIsTheMeanOverCompletedIterations) {
     EXPECT_EQ(rig.integrator.completed(), 3u);
     EXPECT_EQ(rig.status().completed, 3u);
     const Image image = rig.integrator.resolve();
-    const auto films = rig.all<gpu::Film>(BIND_FILM);
+    const auto films = rig.all<gpu::Film>(Binding::film);
     double total = 0.0;
     for (std::size_t i = 0; i < rig.pixels(); ++i) {
         for (int c = 0; c < 3; ++c) {

@@ -24,7 +24,7 @@ protected:
     std::vector<gpu::WavelengthOutput> run(const std::vector<gpu::WavelengthInput>& inputs, std::uint32_t stream = 0) {
         gpu::Params params{};
         params.seed = 5;
-        probe_.input(BIND_PARAMS, std::vector{params}, Buffer::Kind::uniform);
+        probe_.input(Binding::params, std::vector{params});
         probe_.input(PROBE_INPUT, inputs);
         probe_.output<gpu::WavelengthOutput>(PROBE_OUTPUT, inputs.size());
         probe_.run(

@@ -28,7 +28,7 @@ Environment sky() {
 
 /// Marks the pixels whose eye paths of the last iteration ended where they gather photons.
 void keep_gathering(Rig& rig, std::vector<bool>& gathers) {
-    const auto hits = rig.all<gpu::HitPosition>(BIND_HIT_POSITION);
+    const auto hits = rig.all<gpu::HitPosition>(Binding::hit_position);
     for (std::size_t i = 0; i < gathers.size(); ++i) {
         gathers[i] = gathers[i] && (hits[i].state & HIT_MASK) == HIT_DIFFUSE;
     }

@@ -68,7 +68,7 @@ TEST_F(HardLights, OfNarrowCones) {
         settings.photons = 16384;
         Rig rig(scene, settings, plain_device());
         rig.integrator.run(1);
-        const auto photons = rig.all<gpu::Photon>(BIND_SORTED);
+        const auto photons = rig.all<gpu::Photon>(Binding::sorted);
         const glm::dvec3 centre = rig.flat.frame.point(glm::dvec3(0.0));
         double sum = 0.0;
         for (std::uint32_t i = 0; i < settings.photons; ++i) {

@@ -69,8 +69,8 @@ protected:
             rays[i].direction = glm::vec3(glm::normalize(target - glm::dvec3(rays[i].origin)));
         }
         Probe probe("trace", trace_words, flat.bvh.stack);
-        probe.input(BIND_NODES, flat.bvh.nodes, Buffer::Kind::uint_texels);
-        probe.input(BIND_TRIANGLES, flat.triangles, Buffer::Kind::float_texels);
+        probe.input(Binding::nodes, flat.bvh.nodes);
+        probe.input(Binding::triangles, flat.triangles);
         probe.input(PROBE_INPUT, rays);
         probe.output<gpu::RayOutput>(PROBE_OUTPUT, count);
         probe.run(count,

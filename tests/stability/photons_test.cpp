@@ -38,12 +38,12 @@ TEST_F(HardPhotons, APixelThatSeesThemAll) {
     constexpr std::uint32_t paths = 1u << 18;
     Rig rig(floor_under_spot(1e-5), settings_of({1, 1}, paths), plain_device());
     rig.integrator.run(1);
-    gpu::PixelState state = rig.all<gpu::PixelState>(BIND_PIXELS).at(0);
+    gpu::PixelState state = rig.all<gpu::PixelState>(Binding::pixels).at(0);
     state.radius2 = 1.0f;
     state.seeded = 1;
-    rig.integrator.buffer(BIND_PIXELS).upload(std::vector{state});
+    rig.integrator.buffer(Binding::pixels).upload(std::vector{state});
     rig.integrator.run(1);
-    const gpu::Gathered sum = rig.all<gpu::Gathered>(BIND_GATHERED).at(0);
+    const gpu::Gathered sum = rig.all<gpu::Gathered>(Binding::gathered).at(0);
     EXPECT_EQ(sum.count, paths);
     double error = 0.0;
     for (int c = 0; c < 3; ++c) {
@@ -76,7 +76,7 @@ TEST_F(HardPhotons, APixelThatNeverSeesOne) {
     double dark = 0.0, lit = 0.0;
     std::size_t untouched = 0;
     const Image image = rig.integrator.resolve();
-    const auto states = rig.all<gpu::PixelState>(BIND_PIXELS);
+    const auto states = rig.all<gpu::PixelState>(Binding::pixels);
     for (std::size_t i = 0; i < states.size(); ++i) {
         EXPECT_TRUE(std::isfinite(states[i].radius2)) << "pixel " << i;
         if (states[i].photons > 0) {
@@ -123,8 +123,8 @@ TEST_F(HardPhotons, RadiiThatDifferByAMillion) {
     scene.lights.push_back(wide);
     Rig rig(scene, settings_of({32, 32}, 8192), plain_device());
     rig.integrator.run(1);
-    auto hits = rig.all<gpu::HitPosition>(BIND_HIT_POSITION);
-    auto states = rig.all<gpu::PixelState>(BIND_PIXELS);
+    auto hits = rig.all<gpu::HitPosition>(Binding::hit_position);
+    auto states = rig.all<gpu::PixelState>(Binding::pixels);
     const glm::dvec3 centre = rig.flat.frame.point(glm::dvec3(0.0));
     std::mt19937 random(5);
     const auto uniform = [&] { return std::uniform_real_distribution<double>(-1.0, 1.0)(random); };
@@ -135,11 +135,11 @@ TEST_F(HardPhotons, RadiiThatDifferByAMillion) {
         states[i].radius2 = float(radius * radius);
         states[i].seeded = 1;
     }
-    rig.integrator.buffer(BIND_HIT_POSITION).upload(hits);
-    rig.integrator.buffer(BIND_PIXELS).upload(states);
+    rig.integrator.buffer(Binding::hit_position).upload(hits);
+    rig.integrator.buffer(Binding::pixels).upload(states);
     gather(rig);
-    const auto photons = rig.all<gpu::Photon>(BIND_SORTED);
-    const auto gathered = rig.all<gpu::Gathered>(BIND_GATHERED);
+    const auto photons = rig.all<gpu::Photon>(Binding::sorted);
+    const auto gathered = rig.all<gpu::Gathered>(Binding::gathered);
     double differences = 0.0, counted = 0.0;
     for (std::size_t i = 0; i < hits.size(); ++i) {
         std::uint32_t want = 0, doubtful = 0;

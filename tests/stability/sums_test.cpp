@@ -42,18 +42,19 @@ protected:
     /// Every pixel has a diffuse surface, so much light without photons, and so many photons, each of no flux.
     static void set(Rig& rig, float emission, std::uint32_t found) {
         const std::size_t n = rig.pixels();
-        rig.integrator.buffer(BIND_HIT_POSITION)
+        rig.integrator.buffer(Binding::hit_position)
             .upload(std::vector<gpu::HitPosition>(n, {glm::vec3(0.0f), HIT_DIFFUSE}));
-        rig.integrator.buffer(BIND_HIT_WEIGHT).upload(std::vector<gpu::HitWeight>(n, {glm::vec3(1.0f), 0}));
-        rig.integrator.buffer(BIND_HIT_EMISSION).upload(std::vector<gpu::HitEmission>(n, {glm::vec3(emission), 0.0f}));
-        rig.integrator.buffer(BIND_GATHERED)
+        rig.integrator.buffer(Binding::hit_weight).upload(std::vector<gpu::HitWeight>(n, {glm::vec3(1.0f), 0}));
+        rig.integrator.buffer(Binding::hit_emission)
+            .upload(std::vector<gpu::HitEmission>(n, {glm::vec3(emission), 0.0f}));
+        rig.integrator.buffer(Binding::gathered)
             .upload(std::vector<gpu::Gathered>(n, {glm::vec3(0.0f), found, glm::vec3(0.0f), 0}));
     }
 
     static void set_state(Rig& rig, const gpu::PixelState& state) {
-        rig.integrator.buffer(BIND_PIXELS).upload(std::vector<gpu::PixelState>(rig.pixels(), state));
+        rig.integrator.buffer(Binding::pixels).upload(std::vector<gpu::PixelState>(rig.pixels(), state));
     }
-    static gpu::PixelState state_of(Rig& rig) { return rig.all<gpu::PixelState>(BIND_PIXELS).at(0); }
+    static gpu::PixelState state_of(Rig& rig) { return rig.all<gpu::PixelState>(Binding::pixels).at(0); }
 
     static void update(Rig& rig, std::uint32_t times = 1) {
         for (std::uint32_t i = 0; i < times; ++i) {
@@ -86,10 +87,10 @@ TEST_F(Sums, TheFilm) {
     set_state(rig, state);
     const double start = double(before) * double(each);
     const float sum = float(start);
-    rig.integrator.buffer(BIND_FILM).upload(
-        std::vector<gpu::Film>(rig.pixels(), {glm::vec3(sum), glm::vec3(float(start - double(sum)))}));
+    rig.integrator.buffer(Binding::film)
+        .upload(std::vector<gpu::Film>(rig.pixels(), {glm::vec3(sum), glm::vec3(float(start - double(sum)))}));
     update(rig, launches);
-    const gpu::Film film = rig.all<gpu::Film>(BIND_FILM).at(0);
+    const gpu::Film film = rig.all<gpu::Film>(Binding::film).at(0);
     const double want = double(before + launches) * double(each);
     expect_error("film after 10^6 iterations, against doubles",
                  std::abs((double(film.sum.x) + double(film.low.x)) / want - 1.0), 1e-9);
@@ -100,7 +101,7 @@ TEST_F(Sums, TheAovs) {
     Rig rig = rig_of("cppm", true);
     rig.integrator.run(1);
     const auto easy = rig.integrator.aovs();
-    auto sums = rig.all<gpu::Aovs>(BIND_AOVS);
+    auto sums = rig.all<gpu::Aovs>(Binding::aovs);
     for (gpu::Aovs& sum : sums) {
         ASSERT_EQ(sum.hits, 1u);
         for (int c = 0; c < 3; ++c) {
@@ -113,7 +114,7 @@ TEST_F(Sums, TheAovs) {
         }
         sum.hits = before;
     }
-    rig.integrator.buffer(BIND_AOVS).upload(sums);
+    rig.integrator.buffer(Binding::aovs).upload(sums);
     for (std::uint32_t i = 0; i < launches / 2; ++i) {
         rig.integrator.run_kernel("eye", rig.pixels(),
                                   {.iteration = 1, .round = 0, .last_round = 1, .offset = 0, .count = 0});
@@ -183,9 +184,9 @@ TEST_F(Sums, TheVarianceOfTheFTest) {
     for (std::uint32_t i = 0; i < times; ++i) {
         std::copy(now.begin(), now.end(), moments.begin());
         if (i == 0) {
-            rig.integrator.buffer(BIND_MOMENTS).upload(moments);
+            rig.integrator.buffer(Binding::moments).upload(moments);
         } else {
-            rig.integrator.buffer(BIND_MOMENTS).upload(now);
+            rig.integrator.buffer(Binding::moments).upload(now);
         }
         update(rig);
         count += 1.0;
@@ -193,7 +194,7 @@ TEST_F(Sums, TheVarianceOfTheFTest) {
         want_squares += double(rig.settings.sectors) * (x - want_mean) * (x - next);
         want_mean = next;
     }
-    const auto after = rig.all<float>(BIND_MOMENTS);
+    const auto after = rig.all<float>(Binding::moments);
     expect_error("mean of a cell of the F-test about sample 10^6",
                  std::abs((double(after[cells * n]) - mean) / (want_mean - mean) - 1.0), 1e-3);
     expect_error("squares of the F-test about sample 10^6",
@@ -230,11 +231,11 @@ TEST_F(Sums, ChiSquared) {
             pixels[i].seeded = 1;
         }
         set(rig, 0.0f, 0);
-        rig.integrator.buffer(BIND_TALLY).upload(tally);
-        rig.integrator.buffer(BIND_PIXELS).upload(pixels);
+        rig.integrator.buffer(Binding::tally).upload(tally);
+        rig.integrator.buffer(Binding::pixels).upload(pixels);
         const double threshold = double(rig.integrator.params().threshold[rig.settings.rings - 1]);
         update(rig);
-        const auto after = rig.all<gpu::PixelState>(BIND_PIXELS);
+        const auto after = rig.all<gpu::PixelState>(Binding::pixels);
         double error = 0.0;
         for (std::uint32_t i = 0; i < states; ++i) {
             error =
@@ -257,14 +258,14 @@ TEST_F(Sums, CountersNearTheirEnd) {
     state.total = 2040000000;
     state.photons = 4294967000u;
     set_state(rig, state);
-    rig.integrator.buffer(BIND_TALLY).upload(std::vector<std::uint32_t>(cells * n, 2160000000u / 12));
+    rig.integrator.buffer(Binding::tally).upload(std::vector<std::uint32_t>(cells * n, 2160000000u / 12));
     update(rig);
     gpu::PixelState after = state_of(rig);
     EXPECT_EQ(after.photons, 0xffffffffu) << "photons accepted in all stay at their largest number";
     EXPECT_EQ(after.radius2, 1e-3f) << "the disc is even";
     EXPECT_EQ(after.rejections, 0u);
     EXPECT_EQ(after.total, 0u) << "a full tally starts again";
-    const auto tally = rig.all<std::uint32_t>(BIND_TALLY);
+    const auto tally = rig.all<std::uint32_t>(Binding::tally);
     expect_error("photons left in a tally that starts again", std::accumulate(tally.begin(), tally.end(), 0.0), 0.0);
 
     // An uneven disc is still found out with as many.
@@ -273,7 +274,7 @@ TEST_F(Sums, CountersNearTheirEnd) {
     set_state(rig, state);
     std::vector<std::uint32_t> uneven(cells * n, 4200000000u / 12);
     for (std::size_t i = 0; i < n; ++i) uneven[i] += 1000000;
-    rig.integrator.buffer(BIND_TALLY).upload(uneven);
+    rig.integrator.buffer(Binding::tally).upload(uneven);
     update(rig);
     after = state_of(rig);
     EXPECT_EQ(after.rejections, 1u) << "a batch beyond all counters is full when they are";
@@ -282,7 +283,7 @@ TEST_F(Sums, CountersNearTheirEnd) {
     // Rays of one submission.
     gpu::Status status = rig.status();
     status.rays = 0xfffffff0u;
-    rig.integrator.buffer(BIND_STATUS).upload_value(status);
+    rig.integrator.buffer(Binding::status).upload_value(status);
     rig.integrator.run(20);
     Report report;
     rig.integrator.fill(report);

@@ -70,14 +70,14 @@ public:
         field_.set_states(before.pixels);
         std::vector<gpu::Gathered> gathered;
         for (const std::uint32_t count : before.found) gathered.push_back({glm::vec3(0.0f), count, glm::vec3(0.0f), 0});
-        integrator.buffer(BIND_GATHERED).upload(gathered);
-        if (!before.tally.empty()) integrator.buffer(BIND_TALLY).upload(before.tally);
-        if (!before.moments.empty()) integrator.buffer(BIND_MOMENTS).upload(before.moments);
+        integrator.buffer(Binding::gathered).upload(gathered);
+        if (!before.tally.empty()) integrator.buffer(Binding::tally).upload(before.tally);
+        if (!before.moments.empty()) integrator.buffer(Binding::moments).upload(before.moments);
         integrator.run_kernel("update", pixels(),
                               {.iteration = 0, .round = 0, .last_round = 1, .offset = 0, .count = 0});
         return {field_.states(), before.found,
-                integrator.buffer(BIND_TALLY).download<std::uint32_t>(before.tally.size()),
-                integrator.buffer(BIND_MOMENTS).download<float>(before.moments.size())};
+                integrator.buffer(Binding::tally).download<std::uint32_t>(before.tally.size()),
+                integrator.buffer(Binding::moments).download<float>(before.moments.size())};
     }
 
 private:

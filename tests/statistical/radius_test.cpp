@@ -50,7 +50,7 @@ TEST(Radius, HachisukaAndJensenAtConstantDensityAndAtConstantCount) {
             const auto found = std::uint32_t(std::lround(1e6 * ratio_of(0)));
             const std::vector<gpu::Gathered> gathered = {{glm::vec3(0.0f), found, glm::vec3(0.0f), 0},
                                                          {glm::vec3(0.0f), 10, glm::vec3(0.0f), 0}};
-            field.integrator().buffer(BIND_GATHERED).upload(gathered);
+            field.integrator().buffer(Binding::gathered).upload(gathered);
             field.integrator().run_kernel("update", 2,
                                           {.iteration = 0, .round = 0, .last_round = 1, .offset = 0, .count = 0});
         }
@@ -119,7 +119,7 @@ TEST(Radius, BatchesOfThePaperShrinkFaster) {
 /// Mean and standard error of a row of the moments.
 std::pair<double, double> mean_moment(SyntheticField& field, std::uint32_t row) {
     const std::size_t pixels = field.pixels();
-    const auto moments = field.integrator().buffer(BIND_MOMENTS).download<float>(APPM_MOMENTS * pixels);
+    const auto moments = field.integrator().buffer(Binding::moments).download<float>(APPM_MOMENTS * pixels);
     double sum = 0.0, squares = 0.0;
     for (std::size_t i = 0; i < pixels; ++i) {
         const double value = moments[row * pixels + i];
@@ -175,7 +175,7 @@ TEST(Radius, AppmApproachesTheOptimumOnAGaussianSpot) {
     for (const auto& [iterations, tolerance] : {std::pair{1u, 0.2}, {10u, 0.12}, {60u, 0.06}}) {
         field.run(iterations - done);
         done = iterations;
-        const auto moments = field.integrator().buffer(BIND_MOMENTS).download<float>(APPM_MOMENTS * field.pixels());
+        const auto moments = field.integrator().buffer(Binding::moments).download<float>(APPM_MOMENTS * field.pixels());
         const std::vector<gpu::PixelState> states = field.states();
         std::vector<double> ratios;
         // Laplacian -2 / sigma^2 of the spot of height 1, sigma = R_1 / 2; V as above with f = 1.

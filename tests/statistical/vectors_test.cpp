@@ -38,7 +38,7 @@ protected:
     /// The state after a test of this tally.
     static gpu::PixelState test_tally(SyntheticField& field, const Tally& tally) {
         field.reset(0.0);
-        field.integrator().buffer(BIND_TALLY).upload(tally);
+        field.integrator().buffer(Binding::tally).upload(tally);
         return update(field);
     }
 };
@@ -83,7 +83,7 @@ TEST_F(Vectors, CriticalValuesOfTheFTest) {
         std::vector<float> moments(2 * n, 1.0f);
         moments[0] = moments[n] = 1.5f;
         moments.insert(moments.end(), c.rings, 6.0f * c.samples);
-        field.integrator().buffer(BIND_MOMENTS).upload(moments);
+        field.integrator().buffer(Binding::moments).upload(moments);
         const double between = c.samples * 0.25 * (1.0 - 1.0 / double(n)) / (double(n) - 1.0);
         const double within = double(n) * c.samples / (double(n) * (c.samples - 1.0));
         EXPECT_NEAR(between / within / update(field).statistic, c.critical, 6e-4)

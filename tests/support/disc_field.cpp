@@ -20,7 +20,8 @@ DiscField::DiscField(Device& device, const Settings& settings, const std::vector
                      const std::vector<glm::dvec2>& photons)
     : scene_(photon_plane()),
       flat_(flatten(scene_)),
-      integrator_(device, flat_, scene_.cameras.at(0), resolve_settings(settings, scene_)) {
+      on_device_(device, flat_),
+      integrator_(on_device_, scene_.cameras.at(0), resolve_settings(settings, scene_)) {
     assert(discs.size() == settings.size->pixels() && photons.size() == settings.photons);
     const SceneFrame& frame = flat_.frame;
     const auto place = [&](const glm::dvec2& p) { return glm::vec3(frame.point({p.x, p.y, 0.0})); };
@@ -33,11 +34,11 @@ DiscField::DiscField(Device& device, const Settings& settings, const std::vector
         state.batch = 1e30f;  // no test: the radius stays
         states_.push_back(state);
     }
-    integrator_.buffer(BIND_HIT_POSITION).upload(hits_);
-    integrator_.buffer(BIND_HIT_WEIGHT).upload(std::vector<gpu::HitWeight>(hits_.size(), {glm::vec3(1.0f), 0}));
-    integrator_.buffer(BIND_PIXELS).upload(states_);
+    integrator_.buffer(Binding::hit_position).upload(hits_);
+    integrator_.buffer(Binding::hit_weight).upload(std::vector<gpu::HitWeight>(hits_.size(), {glm::vec3(1.0f), 0}));
+    integrator_.buffer(Binding::pixels).upload(states_);
     for (const glm::dvec2& photon : photons) photons_.push_back({place(photon), 0});
-    integrator_.buffer(BIND_PHOTON_FLUX).upload(std::vector<gpu::PhotonFlux>(photons.size(), {glm::vec3(1.0f), 0}));
+    integrator_.buffer(Binding::photon_flux).upload(std::vector<gpu::PhotonFlux>(photons.size(), {glm::vec3(1.0f), 0}));
     const gpu::Params& params = integrator_.params();
     // One photon a light path, each in the slot of its path.
     counters_.assign(std::size_t(params.cells) + 1 + 2 * std::size_t(params.photons) + 1, 0);
@@ -47,13 +48,13 @@ DiscField::DiscField(Device& device, const Settings& settings, const std::vector
 }
 
 void DiscField::iterate() {
-    integrator_.buffer(BIND_COUNTERS).upload(counters_);
-    integrator_.buffer(BIND_PHOTONS).upload(photons_);
+    integrator_.buffer(Binding::counters).upload(counters_);
+    integrator_.buffer(Binding::photons).upload(photons_);
     integrator_.run_from_grid();
 }
 
 std::vector<gpu::Gathered> DiscField::gathered() {
-    return integrator_.buffer(BIND_GATHERED).download<gpu::Gathered>(hits_.size());
+    return integrator_.buffer(Binding::gathered).download<gpu::Gathered>(hits_.size());
 }
 
 glm::dvec2 polar(double distance, double v) {

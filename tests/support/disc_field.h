@@ -10,7 +10,6 @@
 #include "flat/flatten.h"
 #include "render/integrator.h"
 #include "render/settings.h"
-#include "shared/bindings.h"
 #include "vk/device.h"
 
 namespace vkcppm::test {
@@ -31,7 +30,7 @@ public:
     void iterate();
 
     Integrator& integrator() { return integrator_; }
-    gpu::Grid grid() { return integrator_.buffer(BIND_GRID).download_value<gpu::Grid>(); }
+    gpu::Grid grid() { return integrator_.buffer(Binding::grid).download_value<gpu::Grid>(); }
     /// [P] what the last iteration found.
     std::vector<gpu::Gathered> gathered();
 
@@ -43,6 +42,7 @@ public:
 private:
     Scene scene_;
     FlatScene flat_;
+    SceneOnDevice on_device_;
     Integrator integrator_;
     std::vector<gpu::HitPosition> hits_;
     std::vector<gpu::PixelState> states_;

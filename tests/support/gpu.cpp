@@ -28,13 +28,13 @@ Probe::Probe(std::string name, std::span<const std::uint32_t> spirv, std::uint32
       commands_(device(), bindings_, 16),
       kernel_(device(), bindings_, std::move(name), spirv,
               {{SPEC_WORKGROUP, 64}, {SPEC_STACK, stack}, {SPEC_FEATURES, features}, {SPEC_NODE_BITS, node_bits}}) {
-    create(BIND_PARAMS, sizeof(gpu::Params), Buffer::Kind::uniform);
-    create(BIND_STATUS, sizeof(gpu::Status), Buffer::Kind::storage);
+    create(Binding::params, sizeof(gpu::Params));
+    create(Binding::status, sizeof(gpu::Status));
 }
 
-void Probe::create(std::uint32_t binding, std::uint64_t bytes, Buffer::Kind kind) {
+void Probe::create(Binding binding, std::uint64_t bytes) {
     buffers_.erase(binding);
-    buffers_.emplace(binding, Buffer(device(), "probe " + std::to_string(binding), bytes, kind));
+    buffers_.emplace(binding, Buffer(device(), binding, bytes));
     bindings_.bind(binding, buffers_.at(binding));
 }
 

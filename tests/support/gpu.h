@@ -10,7 +10,6 @@
 #include <gtest/gtest.h>
 
 #include "render/integrator.h"
-#include "shared/bindings.h"
 #include "vk/buffer.h"
 #include "vk/device.h"
 #include "vk/kernel.h"
@@ -41,26 +40,23 @@ public:
     Probe(std::string name, std::span<const std::uint32_t> spirv, std::uint32_t stack = 32,
           std::uint32_t features = ~0u, std::uint32_t node_bits = 20);
 
-    template <typename T>
-    void input(std::uint32_t binding, const std::vector<T>& data, Buffer::Kind kind = Buffer::Kind::storage) {
-        create(binding, data.size() * sizeof(T), kind);
+    template <typename T> void input(Binding binding, const std::vector<T>& data) {
+        create(binding, data.size() * sizeof(T));
         buffers_.at(binding).upload(data);
     }
-    template <typename T> void output(std::uint32_t binding, std::size_t count) {
-        create(binding, count * sizeof(T), Buffer::Kind::storage);
-    }
-    template <typename T> std::vector<T> result(std::uint32_t binding, std::size_t count) const {
+    template <typename T> void output(Binding binding, std::size_t count) { create(binding, count * sizeof(T)); }
+    template <typename T> std::vector<T> result(Binding binding, std::size_t count) const {
         return buffers_.at(binding).download<T>(count);
     }
     void run(std::uint64_t invocations, const gpu::Launch& launch = {});
 
 private:
-    void create(std::uint32_t binding, std::uint64_t bytes, Buffer::Kind kind);
+    void create(Binding binding, std::uint64_t bytes);
 
     Bindings bindings_;
     Commands commands_;
     Kernel kernel_;
-    std::map<std::uint32_t, Buffer> buffers_;
+    std::map<Binding, Buffer> buffers_;
 };
 
 }  // namespace vkcppm::test

@@ -9,7 +9,6 @@
 #include <string>
 
 #include "render/render.h"
-#include "shared/bindings.h"
 #include "support/shapes.h"
 
 namespace vkcppm::test {
@@ -72,7 +71,8 @@ SyntheticField::SyntheticField(Device& device, Settings settings, const Field& f
     : field_(field),
       settings_(resolve(settings, field, side, lambda)),
       flat_(flatten(photon_plane())),
-      integrator_(device, flat_, photon_plane().cameras.at(0), settings_),
+      on_device_(device, flat_),
+      integrator_(on_device_, photon_plane().cameras.at(0), settings_),
       lambda_(lambda),
       reach_(reach_of(settings_)),
       random_(seed) {
@@ -96,9 +96,9 @@ SyntheticField::SyntheticField(Device& device, Settings settings, const Field& f
 void SyntheticField::upload_hits() {
     std::vector<gpu::HitPosition> positions;
     for (const glm::vec3& point : points_) positions.push_back({point, HIT_DIFFUSE | 0x3fffffffu << 2});
-    integrator_.buffer(BIND_HIT_POSITION).upload(positions);
-    integrator_.buffer(BIND_HIT_WEIGHT).upload(std::vector<gpu::HitWeight>(pixels(), {glm::vec3(1.0f), 0}));
-    integrator_.buffer(BIND_HIT_EMISSION).upload(std::vector<gpu::HitEmission>(pixels(), {glm::vec3(0.0f), 0.0f}));
+    integrator_.buffer(Binding::hit_position).upload(positions);
+    integrator_.buffer(Binding::hit_weight).upload(std::vector<gpu::HitWeight>(pixels(), {glm::vec3(1.0f), 0}));
+    integrator_.buffer(Binding::hit_emission).upload(std::vector<gpu::HitEmission>(pixels(), {glm::vec3(0.0f), 0.0f}));
 }
 
 void SyntheticField::reset(double batch) {
@@ -108,7 +108,7 @@ void SyntheticField::reset(double batch) {
     state.seeded = 1;
     state.batch = float(batch);
     set_states(std::vector<gpu::PixelState>(pixels(), state));
-    for (const std::uint32_t binding : {BIND_TALLY, BIND_MOMENTS, BIND_FILM}) {
+    for (const Binding binding : {Binding::tally, Binding::moments, Binding::film}) {
         Buffer& buffer = integrator_.buffer(binding);
         buffer.upload(std::vector<std::uint32_t>(buffer.bytes() / 4, 0));
     }
@@ -128,11 +128,11 @@ void SyntheticField::look_once_after(std::uint32_t iterations) {
 }
 
 std::vector<gpu::PixelState> SyntheticField::states() {
-    return integrator_.buffer(BIND_PIXELS).download<gpu::PixelState>(pixels());
+    return integrator_.buffer(Binding::pixels).download<gpu::PixelState>(pixels());
 }
 
 void SyntheticField::set_states(const std::vector<gpu::PixelState>& states) {
-    integrator_.buffer(BIND_PIXELS).upload(states);
+    integrator_.buffer(Binding::pixels).upload(states);
 }
 
 double SyntheticField::rejected() {
@@ -143,7 +143,7 @@ double SyntheticField::rejected() {
 
 std::vector<double> SyntheticField::estimates() {
     std::vector<double> values;
-    for (const gpu::Film& film : integrator_.buffer(BIND_FILM).download<gpu::Film>(pixels())) {
+    for (const gpu::Film& film : integrator_.buffer(Binding::film).download<gpu::Film>(pixels())) {
         values.push_back((double(film.sum.x) + double(film.low.x)) / iterations_);
     }
     return values;
@@ -196,9 +196,9 @@ void SyntheticField::iterate() {
         slots[p] = std::uint32_t(photons_.size() * p / params.photons);
         counts[p] = std::uint32_t(photons_.size() * (p + 1) / params.photons) - slots[p];
     }
-    integrator_.buffer(BIND_COUNTERS).upload(counters_);
-    integrator_.buffer(BIND_PHOTONS).upload(photons_);
-    integrator_.buffer(BIND_PHOTON_FLUX).upload(flux_);
+    integrator_.buffer(Binding::counters).upload(counters_);
+    integrator_.buffer(Binding::photons).upload(photons_);
+    integrator_.buffer(Binding::photon_flux).upload(flux_);
     photons_.clear();
     flux_.clear();
     integrator_.run_from_grid();

@@ -80,6 +80,7 @@ private:
     const Field& field_;
     Settings settings_;
     FlatScene flat_;
+    SceneOnDevice on_device_;
     Integrator integrator_;
     double lambda_;
     double reach_;  // radii around a point within which photons can matter

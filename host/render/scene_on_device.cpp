@@ -1,4 +1,4 @@
-#include "render/scene_buffers.h"
+#include "render/scene_on_device.h"
 
 #include <algorithm>
 #include <bit>
@@ -12,7 +12,6 @@
 #include "flat/features.h"
 #include "render/kernel_choice.h"
 #include "flat/lights.h"
-#include "shared/bindings.h"
 
 namespace vkcppm {
 namespace {
@@ -40,65 +39,30 @@ void set_camera(gpu::Params& params, const Camera& camera, const SceneFrame& fra
 
 }  // namespace
 
-SceneBuffers::SceneBuffers(Device& device, Bindings& bindings, const FlatScene& scene)
-    : device_(device), bindings_(bindings) {
+SceneOnDevice::SceneOnDevice(Device& device, const FlatScene& scene) : device_(device), scene_(scene) {
     if (scene.bvh.nodes.size() > std::size_t(1) << BVH_MAX_NODE_BITS) {
         throw Error(ExitCode::out_of_device_memory,
                     fmt::format("the scene's {} triangles need {} nodes of a BVH, the kernels hold {}",
                                 scene.triangles.size(), scene.bvh.nodes.size(), 1u << BVH_MAX_NODE_BITS));
     }
-    using Kind = Buffer::Kind;
-    upload(BIND_NODES, "bvh nodes", scene.bvh.nodes, Kind::uint_texels);
-    upload(BIND_TRIANGLES, "triangles", scene.triangles, Kind::float_texels);
-    upload(BIND_SHADING, "shading", scene.shading, Kind::uint_texels);
-    upload(BIND_MATERIALS, "materials", scene.materials, Kind::uint_texels);
-    upload(BIND_LIGHTS, "lights", scene.lights, Kind::uint_texels);
-    upload(BIND_TEXCOORDS, "texture coordinates", scene.texcoords, Kind::float_texels);
-    upload(BIND_VERTEX_COLORS, "vertex colours", scene.vertex_colors, Kind::uint_texels);
-    upload(BIND_TANGENTS, "tangents", scene.tangents, Kind::uint_texels);
-    upload(BIND_TEXTURES, "textures", scene.textures, Kind::uint_texels);
-    upload(BIND_TEXELS, "texels", scene.texels, Kind::word_texels);
-    upload(BIND_ENVIRONMENT, "environment", scene.environment, Kind::float_texels);
-    upload(BIND_ENVIRONMENT_ALIAS, "environment alias table", scene.environment_alias, Kind::word_texels);
+    const auto upload = [&]<typename T>(Binding binding, const std::vector<T>& data) {
+        const auto at = buffers_.emplace(binding, Buffer(device, binding, data.size() * sizeof(T))).first;
+        at->second.upload(data);
+    };
+    upload(Binding::nodes, scene.bvh.nodes);
+#define UPLOAD(number, name, Element, per, entries, access, life, hashed) upload(Binding::name, scene.name);
+    SCENE_BUFFERS(UPLOAD)
+#undef UPLOAD
 }
 
-void SceneBuffers::allocate(std::uint32_t binding, const std::string& name, std::uint64_t bytes, Buffer::Kind kind) {
-    buffers_.erase(binding);
-    buffers_.emplace(binding, Buffer(device_, name, bytes, kind));
-    bindings_.bind(binding, buffers_.at(binding));
-    if (const auto texels = texels_over(binding)) bindings_.bind(*texels, buffers_.at(binding));
+void SceneOnDevice::lend(Buffers& buffers) const {
+    for (const auto& [binding, buffer] : buffers_) buffers.lend(binding, buffer);
 }
 
-std::map<std::uint32_t, std::uint64_t> SceneBuffers::bytes() const {
-    std::map<std::uint32_t, std::uint64_t> all;
-    for (const auto& [binding, buffer] : buffers_) all[binding] = buffer.bytes();
-    return all;
-}
-
-std::optional<std::uint32_t> texels_over(std::uint32_t binding) {
-    switch (binding) {
-        case BIND_HIT_POSITION: return BIND_HIT_POSITION_TEXELS;
-        case BIND_HIT_WEIGHT: return BIND_HIT_WEIGHT_TEXELS;
-        case BIND_HIT_EMISSION: return BIND_HIT_EMISSION_TEXELS;
-        case BIND_HIT_SURFACE: return BIND_HIT_SURFACE_TEXELS;
-        case BIND_GATHERED: return BIND_GATHERED_TEXELS;
-        case BIND_PIXELS: return BIND_PIXEL_TEXELS;
-        case BIND_TALLY: return BIND_TALLY_TEXELS;
-        case BIND_MOMENTS: return BIND_MOMENT_TEXELS;
-        case BIND_FILM: return BIND_FILM_TEXELS;
-        case BIND_PHOTONS: return BIND_PHOTON_TEXELS;
-        case BIND_PHOTON_FLUX: return BIND_PHOTON_FLUX_TEXELS;
-        case BIND_SORTED: return BIND_SORTED_TEXELS;
-        case BIND_SORTED_FLUX: return BIND_SORTED_FLUX_TEXELS;
-        case BIND_COUNTERS: return BIND_COUNTER_TEXELS;
-        default: return std::nullopt;
-    }
-}
-
-Specialization scene_specialization(const Bvh& bvh, std::uint32_t features) {
+Specialization scene_specialization(const FlatScene& scene, std::uint32_t features) {
     return {{SPEC_WORKGROUP, workgroup},
-            {SPEC_STACK, bvh.stack},
-            {SPEC_NODE_BITS, std::uint32_t(std::bit_width(bvh.nodes.size() - 1))},
+            {SPEC_STACK, scene.bvh.stack},
+            {SPEC_NODE_BITS, std::uint32_t(std::bit_width(scene.bvh.nodes.size() - 1))},
             {SPEC_FEATURES, features}};
 }
 
