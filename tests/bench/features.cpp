@@ -14,8 +14,8 @@
 #include <fmt/format.h>
 
 #include "flat/features.h"
-#include "support/rig.h"
-#include "support/shapes.h"
+#include "support/device/rig.h"
+#include "support/scenes/shapes.h"
 
 using namespace vkcppm;
 using namespace vkcppm::test;

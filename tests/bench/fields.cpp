@@ -14,7 +14,7 @@
 #include <fmt/format.h>
 
 #include "render/estimators.h"
-#include "support/synthetic_field.h"
+#include "support/device/synthetic_field.h"
 
 using namespace vkcppm;
 using namespace vkcppm::test;

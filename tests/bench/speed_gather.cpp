@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "bench/speed.h"
-#include "support/disc_field.h"
+#include "support/device/disc_field.h"
 
 namespace vkcppm::bench {
 namespace {

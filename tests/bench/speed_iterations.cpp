@@ -6,7 +6,7 @@
 
 #include "bench/speed.h"
 #include "scene/gltf/gltf.h"
-#include "support/scenes.h"
+#include "support/scenes/scenes.h"
 
 namespace vkcppm::bench {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "bench/speed.h"
 #include "kernels/probe.h"
-#include "reference/embree.h"
+#include "oracle/embree.h"
 #include "render/render.h"
 #include "render/scene_buffers.h"
 #include "vk/kernel.h"
@@ -50,7 +50,7 @@ Rays primary_rays(const SceneFrame& frame) {
 }
 
 /// From where the rays hit, by the cosine about the normal on their side.
-Rays diffuse_rays(const Rays& first, const reference::Embree& embree, const FlatScene& flat, Random& random) {
+Rays diffuse_rays(const Rays& first, const oracle::Embree& embree, const FlatScene& flat, Random& random) {
     Rays rays;
     std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
     for (const gpu::RayInput& ray : first) {
@@ -133,7 +133,7 @@ private:
 };
 
 /// Embree over the rays in as many threads; every hit is written.
-Seconds embree_seconds(const reference::Embree& embree, const Rays& rays, unsigned threads) {
+Seconds embree_seconds(const oracle::Embree& embree, const Rays& rays, unsigned threads) {
     std::vector<gpu::RayOutput> outputs(rays.size());
     return time_of([&] {
         std::vector<std::jthread> pool;
@@ -150,7 +150,7 @@ Seconds embree_seconds(const reference::Embree& embree, const Rays& rays, unsign
 
 /// Share of rays whose distance is not Embree's. Rays along edges may differ; more than a few would make the times
 /// idle.
-double differing(const reference::Embree& embree, const Rays& rays, const std::vector<gpu::RayOutput>& hits) {
+double differing(const oracle::Embree& embree, const Rays& rays, const std::vector<gpu::RayOutput>& hits) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const auto hit = embree.nearest(rays[i].origin, rays[i].direction);
@@ -177,7 +177,7 @@ Table bench_rays(const Bench& bench) {
     for (const std::uint32_t triangles : {1000u, 50000u, 500000u}) {
         const Scene scene = bumpy_room(triangles);
         const FlatScene flat = flatten(scene);
-        const reference::Embree embree(corners_of(flat), false);
+        const oracle::Embree embree(corners_of(flat), false);
         Settings wanted;
         wanted.size = Extent{side, side};
         const Settings settings = resolve_settings(wanted, scene);

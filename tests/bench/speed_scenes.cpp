@@ -8,7 +8,7 @@
 
 #include "bench/speed.h"
 #include "render/render.h"
-#include "support/shapes.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm::bench {
 namespace {
@@ -39,7 +39,7 @@ void add_bumpy_sphere(Scene& scene, const glm::dvec3& centre, double radius, int
 Scene bumpy_room(std::uint32_t triangles) {
     Scene scene = test::bare_room(0.7f);
     const int steps = std::max(3, int(std::lround(std::sqrt(triangles / 16.0))));
-    const std::uint32_t material = test::add_diffuse(scene, glm::vec3(0.6f));
+    const std::uint32_t material = test::add_material(scene, test::lambert(glm::vec3(0.6f)));
     for (int i = 0; i < 8; ++i) {
         const glm::dvec3 centre(i & 1 ? 1.45 : 0.55, i & 2 ? 1.35 : 0.45, i & 4 ? 1.5 : 0.6);
         add_bumpy_sphere(scene, centre, 0.25 + 0.01 * i, steps, material);
@@ -49,7 +49,7 @@ Scene bumpy_room(std::uint32_t triangles) {
 
 Scene soup(std::uint32_t triangles) {
     Scene scene;
-    test::add_diffuse(scene, glm::vec3(0.5f));
+    test::add_material(scene, test::lambert(glm::vec3(0.5f)));
     std::mt19937 random(1);
     std::uniform_real_distribution<double> place(-1.0, 1.0);
     const auto point = [&] { return glm::dvec3(place(random), place(random), place(random)); };

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
-#include "support/files.h"
-#include "support/gltf_builder.h"
+#include "support/files/files.h"
+#include "support/scenes/gltf_builder.h"
 
 namespace vkcppm {
 namespace {

@@ -20,7 +20,7 @@
 #include "core/fnv1a.h"
 #include "io/exr.h"
 #include "render/estimators.h"
-#include "support/files.h"
+#include "support/files/files.h"
 
 namespace vkcppm {
 namespace {

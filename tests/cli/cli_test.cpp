@@ -19,10 +19,10 @@
 #include "core/image.h"
 #include "core/metrics.h"
 #include "io/exr.h"
-#include "support/files.h"
-#include "support/process.h"
-#include "support/scenes.h"
-#include "support/temporary_folder.h"
+#include "support/files/files.h"
+#include "support/files/process.h"
+#include "support/files/temporary_folder.h"
+#include "support/scenes/scenes.h"
 
 namespace vkcppm {
 namespace {

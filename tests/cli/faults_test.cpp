@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/program.h"
-#include "support/files.h"
+#include "support/files/files.h"
 
 namespace vkcppm {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reference/path_tracer.h"
-#include "support/rig.h"
-#include "support/scenes.h"
+#include "oracle/path_tracer.h"
+#include "support/device/rig.h"
+#include "support/scenes/scenes.h"
 
 namespace vkcppm::test {
 namespace {
@@ -29,8 +29,8 @@ TEST_F(Aovs, OfALitPlane) {
     std::uint32_t seeded = 0;
     for (std::uint32_t i = 0; i < rig.pixels(); ++i) {
         const auto at = [&](const char* name) { return channels.at(name)[i]; };
-        const reference::Ray ray = reference::camera_ray(camera, *settings.size, i % 32 + 0.5, i / 32 + 0.5);
-        const auto hit = reference::nearest_hit(rig.scene, ray);
+        const oracle::Ray ray = oracle::camera_ray(camera, *settings.size, i % 32 + 0.5, i / 32 + 0.5);
+        const auto hit = oracle::nearest_hit(rig.scene, ray);
         ASSERT_TRUE(hit);
         const double depth = hit->t * glm::dot(glm::dvec3(ray.direction), axis);
         // The mean over points of the pixel against its centre.

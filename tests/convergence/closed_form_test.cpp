@@ -9,7 +9,7 @@
 
 #include "render/render.h"
 #include "scene/gltf/gltf.h"
-#include "support/gpu.h"
+#include "support/device/gpu.h"
 
 namespace vkcppm::test {
 namespace {

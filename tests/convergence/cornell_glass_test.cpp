@@ -2,8 +2,8 @@
 
 #include "core/metrics.h"
 #include "io/exr.h"
-#include "support/rig.h"
-#include "support/scenes.h"
+#include "support/device/rig.h"
+#include "support/scenes/scenes.h"
 
 namespace vkcppm::test {
 namespace {

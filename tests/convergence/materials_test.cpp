@@ -1,4 +1,4 @@
-// One room a feature, by photon mapping and by the reference path tracer, in double precision, without photons and
+// One room a feature, by photon mapping and by the oracle's path tracer, in double precision, without photons and
 // written from the specification alone: block means agree by Welch's test. Lamps are large, so that paths find them;
 // but for the rooms whose lights are small, in which no pixel may stand out either.
 
@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "core/metrics.h"
-#include "support/blocks.h"
-#include "support/rig.h"
-#include "support/rooms.h"
+#include "support/device/rig.h"
+#include "support/scenes/rooms.h"
+#include "support/statistics/blocks.h"
 
 namespace vkcppm::test {
 namespace {

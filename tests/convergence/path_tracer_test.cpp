@@ -1,4 +1,4 @@
-// The path tracer of the kernels, and references, against the reference path tracer, in double precision and with other
+// The path tracer of the kernels, and references, against the oracle's path tracer, in double precision and with other
 // ways of sampling: one room a feature. Paths are unbiased, so that nothing but noise may stand between the two.
 
 #include <algorithm>
@@ -13,23 +13,23 @@
 
 #include "core/metrics.h"
 #include "flat/flatten.h"
-#include "study/moments.h"
-#include "render/path_tracer.h"
-#include "study/reference.h"
-#include "render/render.h"
 #include "flat/surface.h"
-#include "support/blocks.h"
-#include "support/gpu.h"
-#include "support/rooms.h"
-#include "support/scenes.h"
-#include "support/shapes.h"
+#include "render/path_tracer.h"
+#include "render/render.h"
+#include "study/moments.h"
+#include "study/reference.h"
+#include "support/device/gpu.h"
+#include "support/scenes/rooms.h"
+#include "support/scenes/scenes.h"
+#include "support/scenes/shapes.h"
+#include "support/statistics/blocks.h"
 
 namespace vkcppm::test {
 namespace {
 
 constexpr std::uint32_t samples = 256;
 
-reference::PathTracing trace_on_device(const Scene& scene, const Settings& wanted) {
+oracle::PathTracing trace_on_device(const Scene& scene, const Settings& wanted) {
     const Settings settings = resolve_settings(wanted, scene);
     const FlatScene flat = flatten(scene);
     const SceneOnDevice on_device(plain_device(), flat);
@@ -37,7 +37,7 @@ reference::PathTracing trace_on_device(const Scene& scene, const Settings& wante
     Moments moments(*settings.size);
     for (std::uint32_t i = 0; i < samples / PathTracer::batch; ++i) moments.add(tracer.trace());
     EXPECT_EQ(tracer.invalid(), 0u);
-    reference::PathTracing result;
+    oracle::PathTracing result;
     result.mean.extent = result.standard_error.extent = *settings.size;
     for (std::size_t i = 0; i < settings.size->pixels(); ++i) {
         result.mean.rgb.emplace_back(moments.mean()[i]);
@@ -46,8 +46,8 @@ reference::PathTracing trace_on_device(const Scene& scene, const Settings& wante
     return result;
 }
 
-reference::PathTracing trace_in_double(const Scene& scene, const Settings& settings, std::uint32_t samples) {
-    return reference::path_trace(scene, reference_settings(settings, samples));
+oracle::PathTracing trace_in_double(const Scene& scene, const Settings& settings, std::uint32_t samples) {
+    return oracle::path_trace(scene, oracle_settings(settings, samples));
 }
 
 Reference refer(const Scene& scene, const Settings& settings, std::uint32_t iterations, std::uint32_t photons) {
@@ -66,7 +66,7 @@ TEST_P(PathTracerRooms, AgreeWithDoublePrecision) {
     Settings settings;
     GetParam().change(scene, settings);
     settings.size = Extent{16, 16};
-    const reference::PathTracing paths = trace_in_double(scene, settings, samples);
+    const oracle::PathTracing paths = trace_in_double(scene, settings, samples);
     const BlockSettings exact{.side = 8, .level = 1e-4, .bias = 1e-6};
     const BlockComparison blocks = compare_blocks(trace_on_device(scene, settings), paths, exact);
     EXPECT_EQ(blocks.differing, 0u) << "device over double, a block and channel:\n" << blocks.table;
@@ -86,13 +86,13 @@ INSTANTIATE_TEST_SUITE_P(Features, PathTracerRooms, testing::ValuesIn(material_c
 
 /// Regions of <name>.expect.json, as closed_form_test.cpp takes them: 5 standard errors are allowed, and `bias`,
 /// relative.
-void expect_regions(const std::string& name, const std::function<reference::PathTracing(const Settings&)>& render,
+void expect_regions(const std::string& name, const std::function<oracle::PathTracing(const Settings&)>& render,
                     double bias) {
     std::ifstream file(std::filesystem::path(VKCPPM_SOURCE_DIR) / "scenes" / (name + ".expect.json"));
     const nlohmann::json expected = nlohmann::json::parse(file);
     Settings settings;
     settings.size = Extent{expected["size"][0], expected["size"][1]};
-    const reference::PathTracing picture = render(settings);
+    const oracle::PathTracing picture = render(settings);
     for (const auto& region : expected["regions"]) {
         glm::dvec3 sum(0.0), variance(0.0);
         double count = 0.0;
@@ -135,7 +135,7 @@ TEST_P(ReferenceClosedForm, MeanRadianceOfEveryRegion) {
     const auto render = [&](const Settings& settings) {
         const Reference reference = refer(scene, settings, 64, 16384);
         EXPECT_GT(reference.caustic_share, 0.1);
-        return reference::PathTracing{reference.mean, reference.standard_error};
+        return oracle::PathTracing{reference.mean, reference.standard_error};
     };
     expect_regions(GetParam(), render, 0.001);
 }
@@ -158,7 +158,7 @@ TEST(Reference, LeavesWhatIsNearItsLampToPhotons) {
     Scene scene = make_room();
     // A frame of 60 mm round the lamp, and a ball of rough metal that sees it.
     const auto frame = std::uint32_t(scene.materials.size());
-    add_diffuse(scene, glm::vec3(0.9f, 0.8f, 0.7f));
+    add_material(scene, lambert(glm::vec3(0.9f, 0.8f, 0.7f)));
     for (const double x : {0.39, 1.61}) add_quad(scene, {x, 1.93, 0.4}, {0, 0.06, 0}, {0, 0, 1.2}, frame);
     for (const double z : {0.39, 1.61}) add_quad(scene, {0.4, 1.93, z}, {0, 0.06, 0}, {1.2, 0, 0}, frame);
     scene.materials[2].metallic = 1.0f;

@@ -1,4 +1,4 @@
-// The scenes of the project by photon mapping and by the reference path tracer, in double precision and without
+// The scenes of the project by photon mapping and by the oracle's path tracer, in double precision and without
 // photons. Of the paper's scenes only blocks count where path tracing has converged: it hardly finds their caustics.
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "scene/diagnosis/glass.h"
-#include "support/blocks.h"
-#include "support/scenes.h"
+#include "support/scenes/scenes.h"
+#include "support/statistics/blocks.h"
 
 namespace vkcppm::test {
 namespace {

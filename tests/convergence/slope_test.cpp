@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "render/estimators.h"
+#include "support/device/rig.h"
 #include "support/names.h"
-#include "support/rig.h"
-#include "support/scenes.h"
+#include "support/scenes/scenes.h"
 
 namespace vkcppm::test {
 namespace {

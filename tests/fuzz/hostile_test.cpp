@@ -8,12 +8,12 @@
 
 #include <gtest/gtest.h>
 
-#include "support/everything.h"
-#include "support/files.h"
-#include "support/hostile_input.h"
-#include "support/mutation.h"
-#include "support/scenes.h"
-#include "support/temporary_folder.h"
+#include "support/files/files.h"
+#include "support/files/temporary_folder.h"
+#include "support/hostile/hostile_input.h"
+#include "support/hostile/mutation.h"
+#include "support/scenes/everything.h"
+#include "support/scenes/scenes.h"
 
 namespace vkcppm {
 namespace {

@@ -9,9 +9,9 @@
 #include "core/metrics.h"
 #include "io/exr.h"
 #include "io/png.h"
+#include "support/device/rig.h"
 #include "support/names.h"
-#include "support/rig.h"
-#include "support/scenes.h"
+#include "support/scenes/scenes.h"
 
 namespace vkcppm::test {
 namespace {

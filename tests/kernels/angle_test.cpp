@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "kernels/probe.h"
-#include "support/gpu.h"
+#include "support/device/gpu.h"
 
 namespace vkcppm::test {
 namespace {

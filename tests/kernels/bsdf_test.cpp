@@ -1,5 +1,5 @@
 // Every lobe of every kind of material, at several widths and angles: reciprocal, sampled in proportion to its density,
-// of the reference's albedo, and split between following and gathering without rest.
+// of the oracle's albedo, and split between following and gathering without rest.
 
 #include <algorithm>
 #include <array>
@@ -14,12 +14,12 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "kernels/probe.h"
-#include "reference/bsdf.h"
 #include "flat/surface.h"
 #include "flat/textures.h"
-#include "support/gpu.h"
-#include "support/statistics.h"
+#include "kernels/probe.h"
+#include "oracle/bsdf.h"
+#include "support/device/gpu.h"
+#include "support/statistics/statistics.h"
 
 namespace vkcppm::test {
 namespace {
@@ -96,9 +96,9 @@ std::vector<Case> cases(float roughness) {
     return list;
 }
 
-reference::Bsdf reference_of(const Case& c) {
+oracle::Bsdf oracle_of(const Case& c) {
     const Material& m = c.material;
-    reference::Bsdf b;
+    oracle::Bsdf b;
     b.base_color = glm::dvec3(m.base_color);
     b.metallic = m.metallic;
     b.alpha = double(m.roughness) * double(m.roughness);
@@ -183,8 +183,8 @@ protected:
     Probe probe_{"bsdf", bsdf_words, 32, features};
 };
 
-constexpr reference::Lobe reference_lobe[] = {reference::Lobe::diffuse, reference::Lobe::reflection,
-                                              reference::Lobe::transmission, reference::Lobe::coat};
+constexpr oracle::Lobe oracle_lobe[] = {oracle::Lobe::diffuse, oracle::Lobe::reflection, oracle::Lobe::transmission,
+                                        oracle::Lobe::coat};
 
 std::string text(const glm::dvec3& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z); }
 
@@ -207,7 +207,7 @@ TEST_F(BsdfLobes, ValuesAreTheReferences) {
     std::normal_distribution<double> normal;
     std::size_t bright = 0;
     for_views([&](const Case& c, const glm::vec3& wo) {
-        const reference::Bsdf reference = reference_of(c);
+        const oracle::Bsdf oracle = oracle_of(c);
         std::vector<gpu::BsdfInput> inputs = random_numbers(500, random());
         const auto sampled = run(c.material, view_of(c, wo, none), inputs, true);
         for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -217,12 +217,12 @@ TEST_F(BsdfLobes, ValuesAreTheReferences) {
         }
         const auto outputs = run(c.material, view_of(c, wo, none), inputs, false);
         const double eta2 = std::pow(index_ratio(c), 2);
-        double alpha = reference.alpha;
-        if (reference.coat > 0.0 && reference.coat_alpha > 0.0) alpha = std::min(alpha, reference.coat_alpha);
+        double alpha = oracle.alpha;
+        if (oracle.coat > 0.0 && oracle.coat_alpha > 0.0) alpha = std::min(alpha, oracle.coat_alpha);
         for (std::size_t i = 0; i < inputs.size(); ++i) {
             const glm::dvec3 wi(inputs[i].incoming);
             if (std::abs(wi.z) < 1e-4) continue;
-            const glm::dvec3 want = reference.evaluate(glm::dvec3(wo), wi) * (wi.z < 0.0 ? eta2 : 1.0);
+            const glm::dvec3 want = oracle.evaluate(glm::dvec3(wo), wi) * (wi.z < 0.0 ? eta2 : 1.0);
             for (int channel = 0; channel < 3; ++channel) {
                 // Rounding of half vectors, in widths of the lobe.
                 const double relative = 2e-5 + 3e-6 / alpha + critical_rounding(c, glm::dvec3(wo), wi);
@@ -281,7 +281,7 @@ TEST_F(BsdfLobes, WeightsAverageToTheAlbedo) {
     constexpr std::size_t samples = 1u << 15;
     const auto inputs = random_numbers(samples, 23);
     for_views([&](const Case& c, const glm::vec3& wo) {
-        const glm::dvec3 albedo = reference_of(c).directional_albedo(glm::dvec3(wo), 200);
+        const glm::dvec3 albedo = oracle_of(c).directional_albedo(glm::dvec3(wo), 200);
         const auto outputs = run(c.material, view_of(c, wo, none), inputs, true);
         glm::dvec3 sum(0.0), squares(0.0);
         double heaviest = 0.0;
@@ -295,7 +295,7 @@ TEST_F(BsdfLobes, WeightsAverageToTheAlbedo) {
         for (int channel = 0; channel < 3; ++channel) {
             const double mean = sum[channel] / samples;
             const double error = std::sqrt(std::max(0.0, squares[channel] / samples - mean * mean) / samples);
-            // 1200 means: five standard errors; then the quadrature of the reference.
+            // 1200 means: five standard errors; then the quadrature of the oracle.
             EXPECT_NEAR(mean, albedo[channel], 5.0 * error + 2e-4)
                 << "channel " << channel << ", standard error " << error << ", heaviest sample " << heaviest;
             // The model's coats take from the base by the half vector: together they are too bright at grazing angles.
@@ -464,10 +464,10 @@ TEST_F(BsdfLobes, DirectionsFollowTheDensityThatTheyReport) {
             if (c.name != which.material) continue;
             const LobeIndex lobe = which.lobe;
             const glm::dvec3 wo = glm::normalize(glm::dvec3(outgoing));
-            const reference::Bsdf reference = reference_of(c);
-            const double alpha = lobe == clearcoat ? reference.coat_alpha : reference.alpha;
+            const oracle::Bsdf oracle = oracle_of(c);
+            const double alpha = lobe == clearcoat ? oracle.coat_alpha : oracle.alpha;
             const double ratio = index_ratio(c);
-            const bool thin = reference.thin;
+            const bool thin = oracle.thin;
             const auto density = [&](const glm::dvec3& wi) { return lobe_density(lobe, alpha, thin, ratio, wo, wi); };
 
             glm::dvec3 peak(-wo.x, -wo.y, wo.z);
@@ -507,7 +507,7 @@ TEST_F(BsdfLobes, DirectionsFollowTheDensityThatTheyReport) {
                 ASSERT_NEAR(out.density, want, relative * want + 1e-6)
                     << "lobe " << lobe << ", wi " << text(wi) << ": density";
                 // f cos / density, lobe by lobe.
-                glm::dvec3 weight = reference.evaluate(reference_lobe[lobe], wo, wi) * (std::abs(wi.z) / want);
+                glm::dvec3 weight = oracle.evaluate(oracle_lobe[lobe], wo, wi) * (std::abs(wi.z) / want);
                 for (int channel = 0; channel < 3; ++channel) {
                     const double tolerance = (2e-5 + critical_rounding(c, wo, wi)) * weight[channel] + 1e-6;
                     ASSERT_NEAR(out.weight[channel], weight[channel], tolerance)
@@ -538,7 +538,7 @@ TEST_F(BsdfLobes, FollowingAndGatheringMakeOneWhole) {
         everywhere[i].incoming = glm::vec3(r * std::cos(turn), r * std::sin(turn), i % 2 == 0 ? z : -z);
     }
     for_views([&](const Case& c, const glm::vec3& wo) {
-        const glm::dvec3 albedo = reference_of(c).directional_albedo(glm::dvec3(wo), 200);
+        const glm::dvec3 albedo = oracle_of(c).directional_albedo(glm::dvec3(wo), 200);
         const double eta2 = std::pow(index_ratio(c), 2);
         glm::dvec3 sum(0.0), squares(0.0);
         const auto followed = run(c.material, view_of(c, wo, none), inputs, true);

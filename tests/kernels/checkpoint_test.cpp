@@ -10,10 +10,10 @@
 
 #include "core/error.h"
 #include "render/estimators.h"
-#include "support/gpu.h"
+#include "support/device/gpu.h"
+#include "support/device/rig.h"
 #include "support/names.h"
-#include "support/rig.h"
-#include "support/shapes.h"
+#include "support/scenes/shapes.h"
 #include "support/thrown.h"
 
 namespace vkcppm::test {

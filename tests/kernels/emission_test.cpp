@@ -16,14 +16,14 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "kernels/probe.h"
-#include "reference/texture.h"
 #include "flat/features.h"
 #include "flat/flatten.h"
 #include "flat/lights.h"
-#include "support/gpu.h"
-#include "support/shapes.h"
-#include "support/statistics.h"
+#include "kernels/probe.h"
+#include "oracle/texture.h"
+#include "support/device/gpu.h"
+#include "support/scenes/shapes.h"
+#include "support/statistics/statistics.h"
 
 namespace vkcppm::test {
 namespace {
@@ -48,12 +48,12 @@ struct Source {
 
 Scene lights_of_every_kind() {
     Scene scene;
-    const auto floor = add_diffuse(scene, glm::vec3(0.5f));
+    const auto floor = add_material(scene, lambert(glm::vec3(0.5f)));
     add_quad(scene, {-2, -1, -2}, {0, 0, 4}, {4, 0, 0}, floor);
     // Colours differ in hue, so that the power of a path tells its light.
-    add_triangle(scene, {-1, 0, -1}, {0, 0.5, -1}, {-1, 1, 0}, add_emitter(scene, {9, 1, 1}));
-    add_triangle(scene, {1, 0, 1}, {1.2, 0.1, 1}, {1, 0.4, 1.3}, add_emitter(scene, {1, 9, 1}, true));
-    add_triangle(scene, {0, 1, 0}, {0, 1, 1.5}, {1.5, 1, 0}, add_emitter(scene, {1, 1, 9}));
+    add_triangle(scene, {-1, 0, -1}, {0, 0.5, -1}, {-1, 1, 0}, add_material(scene, emitter({9, 1, 1})));
+    add_triangle(scene, {1, 0, 1}, {1.2, 0.1, 1}, {1, 0.4, 1.3}, add_material(scene, emitter({1, 9, 1}, true)));
+    add_triangle(scene, {0, 1, 0}, {0, 1, 1.5}, {1.5, 1, 0}, add_material(scene, emitter({1, 1, 9})));
     const auto add = [&](PunctualLight::Kind kind, const glm::vec3& intensity, const glm::dvec3& position,
                          const glm::dvec3& direction, double inner, double outer) {
         PunctualLight light;
@@ -374,7 +374,7 @@ TEST_F(Emission, LightsEmitTheirShareWhereAndWhereTo) {
 /// A floor under an environment of columns x rows random pixels, one of them black and one very bright.
 Scene open_scene(std::uint32_t columns, std::uint32_t rows) {
     Scene scene;
-    add_quad(scene, {-2, -1, -2}, {0, 0, 4}, {4, 0, 0}, add_diffuse(scene, glm::vec3(0.5f)));
+    add_quad(scene, {-2, -1, -2}, {0, 0, 4}, {4, 0, 0}, add_material(scene, lambert(glm::vec3(0.5f))));
     std::mt19937 random(7);
     std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
     Environment map;
@@ -470,7 +470,7 @@ TEST_F(Emission, AnEnvironmentEmitsItsRadianceFromEveryPixel) {
 /// A box of three different sides: its silhouette is a hexagon from most directions.
 Scene long_box() {
     Scene scene;
-    add_box(scene, {-2.0, 0.0, -1.0}, {2.0, 0.7, 1.0}, add_diffuse(scene, glm::vec3(0.5f)), false);
+    add_box(scene, {-2.0, 0.0, -1.0}, {2.0, 0.7, 1.0}, add_material(scene, lambert(glm::vec3(0.5f))), false);
     return scene;
 }
 
@@ -499,7 +499,7 @@ TEST_F(Emission, ADirectionalLightIsUniformOverTheSilhouetteOfTheBounds) {
 /// From above a sphere about it shows less of itself than a box, from the side more.
 Scene lens() {
     Scene scene;
-    add_sphere(scene, {0, 0, 0}, 1.0, 3, add_diffuse(scene, glm::vec3(0.5f)), true);
+    add_sphere(scene, {0, 0, 0}, 1.0, 3, add_material(scene, lambert(glm::vec3(0.5f))), true);
     for (auto& p : scene.positions) p.y *= 0.5;
     return scene;
 }
@@ -682,7 +682,7 @@ TEST_F(Emission, TexturedEmittersEmitTheirTexture) {
         for (int i = 0; i < cells * fine; ++i) {
             for (int j = 0; j < cells * fine; ++j) {
                 const glm::dvec2 uv((i + 0.5) / (cells * fine), (j + 0.5) / (cells * fine));
-                const glm::dvec4 t = reference::lookup(texture, c.image, uv, reference::Encoding::srgb);
+                const glm::dvec4 t = oracle::lookup(texture, c.image, uv, oracle::Encoding::srgb);
                 glm::dvec3 share(1.0);
                 switch (c.alpha) {
                     case Material::Alpha::opaque: share = glm::dvec3(t); break;

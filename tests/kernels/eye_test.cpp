@@ -1,4 +1,4 @@
-// The eye pass, path by path, against rays of the reference camera through the double-precision scene.
+// The eye pass, path by path, against rays of the oracle's camera through the double-precision scene.
 
 #include <algorithm>
 #include <cmath>
@@ -10,14 +10,14 @@
 #include <gtest/gtest.h>
 
 #include "kernels/probe.h"
-#include "reference/bvh.h"
-#include "reference/fresnel.h"
-#include "reference/octahedral.h"
-#include "reference/path_tracer.h"
-#include "reference/surface.h"
-#include "support/gpu.h"
-#include "support/rig.h"
-#include "support/shapes.h"
+#include "oracle/bvh.h"
+#include "oracle/fresnel.h"
+#include "oracle/octahedral.h"
+#include "oracle/path_tracer.h"
+#include "oracle/surface.h"
+#include "support/device/gpu.h"
+#include "support/device/rig.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {
@@ -39,7 +39,7 @@ Scene as_uploaded(const Rig& rig) {
         add_triangle(scene, v0, v0 + glm::dvec3(t.e1), v0 + glm::dvec3(t.e2), shading.material & ~SHADING_FLAT);
         if (shading.material & SHADING_FLAT) continue;
         for (int c = 0; c < 3; ++c)
-            scene.normals[scene.normals.size() - 3 + c] = glm::vec3(reference::unpack_direction(shading.normal[c]));
+            scene.normals[scene.normals.size() - 3 + c] = glm::vec3(oracle::unpack_direction(shading.normal[c]));
     }
     return scene;
 }
@@ -70,11 +70,11 @@ struct Path {
 };
 
 /// Follows the path of one pixel. Lengths in the frame.
-Path follow(const Rig& rig, const Scene& scene, const reference::Bvh& bvh, std::uint32_t pixel,
+Path follow(const Rig& rig, const Scene& scene, const oracle::Bvh& bvh, std::uint32_t pixel,
             const std::vector<double>& numbers) {
     const Extent size = *rig.settings.size;
     const double x = pixel % size.width + numbers[0], y = pixel / size.width + numbers[1];
-    reference::Ray ray = reference::camera_ray(rig.scene.cameras[0], size, x, y);
+    oracle::Ray ray = oracle::camera_ray(rig.scene.cameras[0], size, x, y);
     ray.origin = rig.flat.frame.point(ray.origin);
     Path path;
     glm::dvec3 throughput(1.0);
@@ -83,14 +83,14 @@ Path follow(const Rig& rig, const Scene& scene, const reference::Bvh& bvh, std::
         if (!hit) break;
         path.length += hit->t;
         ++path.bounces;
-        const reference::Surface surface = reference::surface_at(scene, *hit, ray.direction);
+        const oracle::Surface surface = oracle::surface_at(scene, *hit, ray.direction);
         const double slope = glm::dot(surface.shading_normal, ray.direction);
         // Grazing curved glass, a path crosses a facet by a chord that is nearly nothing.
-        const bool grazing = slope > (surface.scattering == reference::Scattering::glass ? -0.15 : -0.02);
+        const bool grazing = slope > (surface.scattering == oracle::Scattering::glass ? -0.15 : -0.02);
         path.delicate =
             path.delicate || grazing || std::min({hit->barycentric.x, hit->barycentric.y, hit->barycentric.z}) < 1e-4;
         path.emission += throughput * surface.emission;
-        if (surface.scattering == reference::Scattering::lambert) {
+        if (surface.scattering == oracle::Scattering::lambert) {
             path.diffuse = surface.base_color != glm::dvec3(0.0);
             path.position = surface.position;
             path.normal = surface.shading_normal;
@@ -101,11 +101,11 @@ Path follow(const Rig& rig, const Scene& scene, const reference::Bvh& bvh, std::
         const double cosine = std::min(1.0, -slope);
         glm::dvec3 next = reflected;
         bool reflects = true;
-        if (surface.scattering == reference::Scattering::mirror) {
-            throughput *= reference::fresnel_metal(surface.base_color, cosine);
+        if (surface.scattering == oracle::Scattering::mirror) {
+            throughput *= oracle::fresnel_metal(surface.base_color, cosine);
         } else {
             const double ratio = surface.front ? surface.ior : 1.0 / surface.ior;
-            const double reflectance = reference::fresnel_dielectric(cosine, ratio), u = numbers[depth + 2];
+            const double reflectance = oracle::fresnel_dielectric(cosine, ratio), u = numbers[depth + 2];
             path.delicate = path.delicate || std::abs(u - reflectance) < 1e-3;
             if (u >= reflectance) {
                 reflects = false;
@@ -124,16 +124,18 @@ Path follow(const Rig& rig, const Scene& scene, const reference::Bvh& bvh, std::
 
 class Eye : public GpuTest {};
 
-TEST_F(Eye, PathsEndWhereTheReferenceEndsThem) {
+TEST_F(Eye, PathsEndWhereTheOracleEndsThem) {
     Settings settings;
     settings.size = Extent{96, 64};
     settings.photons = 64;
     Scene scene = room();
-    add_sphere(scene, {0.55, 0.45, 0.8}, 0.15, 1, add_diffuse(scene, {0.2f, 0.4f, 0.8f}), false);  // inside the glass
-    add_quad(scene, {0.2, 1.0, 0.02}, {0.4, 0.0, 0.0}, {0.0, 0.4, 0.0}, add_emitter(scene, {3.0f, 2.0f, 1.0f}));
+    add_sphere(scene, {0.55, 0.45, 0.8}, 0.15, 1, add_material(scene, lambert({0.2f, 0.4f, 0.8f})),
+               false);  // inside the glass
+    add_quad(scene, {0.2, 1.0, 0.02}, {0.4, 0.0, 0.0}, {0.0, 0.4, 0.0},
+             add_material(scene, emitter({3.0f, 2.0f, 1.0f})));
     Rig rig(scene, settings);
     const Scene uploaded = as_uploaded(rig);
-    const reference::Bvh bvh(uploaded);
+    const oracle::Bvh bvh(uploaded);
     std::size_t bounced = 0, emitting = 0, delicate = 0;
     for (std::uint32_t iteration = 0; iteration < 3; ++iteration) {
         rig.integrator.run(1);
@@ -162,8 +164,7 @@ TEST_F(Eye, PathsEndWhereTheReferenceEndsThem) {
             ASSERT_LT(glm::distance(glm::dvec3(positions[i].position), path.position), tolerance) << line;
             ASSERT_LT(glm::distance(glm::dvec3(weights[i].weight), path.weight), 1e-4 * glm::length(path.weight))
                 << line;
-            ASSERT_LT(glm::distance(reference::unpack_direction(weights[i].normal), path.normal),
-                      7e-5 + 10.0 * tolerance)
+            ASSERT_LT(glm::distance(oracle::unpack_direction(weights[i].normal), path.normal), 7e-5 + 10.0 * tolerance)
                 << line;
             // A disc of the pixel's area at the length of the path, for a view without a bend.
             const double half = std::tan(0.5 * rig.scene.cameras[0].yfov), pixel_side = 2.0 * half / 64.0;
@@ -195,7 +196,7 @@ TEST_F(Eye, TheEnvironmentIsSeenWhereThereIsNoTriangle) {
 TEST_F(Eye, JitterCoversThePixelOverIterations) {
     // A plane across the view: hit positions give the film positions back.
     Scene scene;
-    add_quad(scene, {-5, -5, -1}, {10, 0, 0}, {0, 10, 0}, add_diffuse(scene, glm::vec3(0.5f)));
+    add_quad(scene, {-5, -5, -1}, {10, 0, 0}, {0, 10, 0}, add_material(scene, lambert(glm::vec3(0.5f))));
     add_camera(scene, {0, 0, 0}, {0, 0, -1}, 1.0);
     Settings settings;
     settings.size = Extent{3, 2};

@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "kernels/probe.h"
-#include "reference/octahedral.h"
-#include "support/gpu.h"
+#include "oracle/octahedral.h"
+#include "support/device/gpu.h"
 
 namespace vkcppm::test {
 namespace {
@@ -72,7 +72,7 @@ TEST_F(Frame, PackedDirectionsComeBackWithinTheRoundingOfSixteenBits) {
         ASSERT_LE(angle_between(samples[i].unpacked, list[i]), bound)
             << text(list[i]) << " came back as " << text(samples[i].unpacked);
         ASSERT_NEAR(glm::length(glm::dvec3(samples[i].unpacked)), 1.0, 3e-7) << text(list[i]);
-        ASSERT_LE(angle_between(samples[i].unpacked, reference::unpack_direction(samples[i].word)), 1e-6)
+        ASSERT_LE(angle_between(samples[i].unpacked, oracle::unpack_direction(samples[i].word)), 1e-6)
             << text(list[i]) << " packed as " << samples[i].word;
     }
     for (const glm::vec3& axis : {glm::vec3(1, 0, 0), glm::vec3(-1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(0, -1, 0),

@@ -11,12 +11,12 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "reference/gather.h"
-#include "reference/octahedral.h"
-#include "support/disc_field.h"
-#include "support/gpu.h"
-#include "support/rig.h"
-#include "support/shapes.h"
+#include "oracle/gather.h"
+#include "oracle/octahedral.h"
+#include "support/device/disc_field.h"
+#include "support/device/gpu.h"
+#include "support/device/rig.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {
@@ -38,7 +38,7 @@ Settings settings_of(const std::string& estimator, std::uint32_t photons) {
 
 /// The photons of a rig in the order of the grid, with the flux that pixel normal n would add.
 struct PhotonSet {
-    std::vector<reference::Photon> photons;  // flux without the correction for shading normals
+    std::vector<oracle::Photon> photons;  // flux without the correction for shading normals
     std::vector<glm::dvec3> towards;
 };
 
@@ -50,19 +50,19 @@ PhotonSet photons_of(Rig& rig) {
     PhotonSet set;
     for (std::size_t i = 0; i < count; ++i) {
         set.photons.push_back(
-            {glm::dvec3(sorted[i].position), reference::unpack_direction(sorted[i].normal), glm::dvec3(flux[i].power)});
-        set.towards.push_back(reference::unpack_direction(flux[i].direction));
+            {glm::dvec3(sorted[i].position), oracle::unpack_direction(sorted[i].normal), glm::dvec3(flux[i].power)});
+        set.towards.push_back(oracle::unpack_direction(flux[i].direction));
     }
     return set;
 }
 
 /// What the pixel gathers at; none where it sees no diffuse surface.
-std::optional<reference::GatherPoint> point_of(const gpu::HitPosition& position, const gpu::HitWeight& weight,
-                                               const Settings& settings) {
+std::optional<oracle::GatherPoint> point_of(const gpu::HitPosition& position, const gpu::HitWeight& weight,
+                                            const Settings& settings) {
     if ((position.state & HIT_MASK) != HIT_DIFFUSE) return std::nullopt;
-    reference::GatherPoint point;
+    oracle::GatherPoint point;
     point.position = glm::dvec3(position.position);
-    point.normal = reference::unpack_direction(weight.normal);
+    point.normal = oracle::unpack_direction(weight.normal);
     // Tangents of Duff et al. 2017, equations of their listing 3.
     const glm::dvec3 n = point.normal;
     const double sign = n.z >= 0.0 ? 1.0 : -1.0, a = -1.0 / (sign + n.z), b = n.x * n.y * a;
@@ -78,7 +78,7 @@ struct Doubtful {
     std::size_t accepted = 0, cells = 0;
 };
 
-Doubtful doubtful(const reference::GatherPoint& point, double radius2, const std::vector<reference::Photon>& photons) {
+Doubtful doubtful(const oracle::GatherPoint& point, double radius2, const std::vector<oracle::Photon>& photons) {
     Doubtful result;
     for (const auto& photon : photons) {
         const glm::dvec3 offset = photon.position - point.position;
@@ -98,7 +98,7 @@ Doubtful doubtful(const reference::GatherPoint& point, double radius2, const std
     return result;
 }
 
-std::string where(std::size_t pixel, const reference::GatherPoint& point, double radius2) {
+std::string where(std::size_t pixel, const oracle::GatherPoint& point, double radius2) {
     return fmt::format("pixel {} at ({:.9g}, {:.9g}, {:.9g}), radius {:.9g}", pixel, point.position.x, point.position.y,
                        point.position.z, std::sqrt(radius2));
 }
@@ -142,7 +142,7 @@ TEST_F(Gather, StartingRadiusIsTheDistanceOfTheKthNearestPhoton) {
             }
             const double cap = std::min<double>(
                 params.radius_cap, std::max<double>(params.radius_floor, params.footprint_cap * emission[i].footprint));
-            const auto kth = reference::kth_nearest_distance(*point, rig.settings.knn, set.photons);
+            const auto kth = oracle::kth_nearest_distance(*point, rig.settings.knn, set.photons);
             const bool found = kth && *kth < cap;
             const double want = found ? *kth * *kth : cap * cap;
             if (doubtful(*point, want, set.photons).accepted >
@@ -221,7 +221,7 @@ TEST_F(Gather, SumsCountsAndTalliesAreThoseOfAllPhotons) {
         const auto gathered = rig.all<gpu::Gathered>(Binding::gathered);
         const auto tally = rig.all<std::uint32_t>(Binding::tally);
         PhotonSet set = photons_of(rig);
-        const std::vector<reference::Photon> plain = set.photons;
+        const std::vector<oracle::Photon> plain = set.photons;
         std::size_t photons = 0, doubtful_pixels = 0, doubtful_cells = 0, smooth = 0;
         for (std::size_t i = 0; i < rig.pixels(); ++i) {
             const auto point = point_of(hits[i], weights[i], rig.settings);
@@ -236,7 +236,7 @@ TEST_F(Gather, SumsCountsAndTalliesAreThoseOfAllPhotons) {
                     plain[j].flux * shading / std::max(0.01, glm::dot(set.towards[j], plain[j].normal));
             }
             const double radius2 = states[i].radius2;
-            const auto want = reference::gather(*point, std::sqrt(radius2), set.photons);
+            const auto want = oracle::gather(*point, std::sqrt(radius2), set.photons);
             const Doubtful doubt = doubtful(*point, radius2, set.photons);
             photons += want.count;
             smooth +=

@@ -10,9 +10,9 @@
 
 #include <gtest/gtest.h>
 
-#include "support/gpu.h"
-#include "support/rig.h"
-#include "support/shapes.h"
+#include "support/device/gpu.h"
+#include "support/device/rig.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "kernels/layout_members.h"
 #include "kernels/probe.h"
-#include "support/gpu.h"
+#include "support/device/gpu.h"
 
 namespace vkcppm::test {
 namespace {

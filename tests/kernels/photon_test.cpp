@@ -9,10 +9,10 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "reference/octahedral.h"
-#include "support/gpu.h"
-#include "support/rig.h"
-#include "support/shapes.h"
+#include "oracle/octahedral.h"
+#include "support/device/gpu.h"
+#include "support/device/rig.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {
@@ -64,8 +64,8 @@ TEST_F(Photons, LieOnDiffuseSurfacesOnTheSideTheyCameFrom) {
         for (const Stored& stored : path) {
             ++count;
             const glm::dvec3 p(stored.photon.position);
-            const glm::dvec3 normal = reference::unpack_direction(stored.photon.normal);
-            const glm::dvec3 towards = reference::unpack_direction(stored.flux.direction);
+            const glm::dvec3 normal = oracle::unpack_direction(stored.photon.normal);
+            const glm::dvec3 towards = oracle::unpack_direction(stored.flux.direction);
             double nearest = 1e9;
             bool diffuse = false;
             glm::dvec3 facing(0.0);
@@ -146,7 +146,7 @@ TEST_F(Photons, OfPunctualLightsCarryWhatMeetsASquare) {
     // a spot within it loses nothing, a directional light sends it E times its area times the cosine.
     Scene scene;
     const double a = 1.0, h = 0.7;
-    add_quad(scene, {-a, 0, -a}, {0, 0, 2 * a}, {2 * a, 0, 0}, add_diffuse(scene, glm::vec3(0.5f)));
+    add_quad(scene, {-a, 0, -a}, {0, 0, 2 * a}, {2 * a, 0, 0}, add_material(scene, lambert(glm::vec3(0.5f))));
     add_camera(scene, {0, 2, 2}, {0, 0, 0}, 0.8);
     PunctualLight point;
     point.intensity = {1.0f, 0.0f, 0.0f};

@@ -7,11 +7,11 @@
 
 #include "app/pipeline_cache.h"
 #include "render/render.h"
-#include "support/files.h"
-#include "support/gpu.h"
-#include "support/shapes.h"
-#include "support/temporary_folder.h"
-#include "support/variable.h"
+#include "support/device/gpu.h"
+#include "support/files/files.h"
+#include "support/files/temporary_folder.h"
+#include "support/files/variable.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {

@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "core/metrics.h"
-#include "support/gpu.h"
-#include "support/rig.h"
-#include "support/scenes.h"
+#include "support/device/gpu.h"
+#include "support/device/rig.h"
+#include "support/scenes/scenes.h"
 #include "support/thrown.h"
 
 namespace vkcppm {

@@ -10,11 +10,11 @@
 #include <gtest/gtest.h>
 
 #include "render/estimators.h"
-#include "support/gpu.h"
+#include "support/device/gpu.h"
+#include "support/device/rig.h"
 #include "support/names.h"
-#include "support/rig.h"
-#include "support/rooms.h"
-#include "support/shapes.h"
+#include "support/scenes/rooms.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {

@@ -11,9 +11,9 @@
 #include <gtest/gtest.h>
 
 #include "kernels/probe.h"
-#include "reference/rng.h"
-#include "support/gpu.h"
-#include "support/statistics.h"
+#include "oracle/rng.h"
+#include "support/device/gpu.h"
+#include "support/statistics/statistics.h"
 
 namespace vkcppm::test {
 namespace {
@@ -69,8 +69,8 @@ TEST_F(Rng, GivesTheBitsOfThePaper) {
     const auto drawn = draw(keys);
     for (std::size_t i = 0; i < keys.size(); ++i) {
         const auto& k = keys[i];
-        const auto hash = reference::pcg4d({k.seed, k.iteration, k.stream, k.path});
-        const auto bits = reference::pcg4d({k.path, k.dimension, k.iteration * 4 + k.stream, k.seed});
+        const auto hash = oracle::pcg4d({k.seed, k.iteration, k.stream, k.path});
+        const auto bits = oracle::pcg4d({k.path, k.dimension, k.iteration * 4 + k.stream, k.seed});
         for (int c = 0; c < 4; ++c) {
             ASSERT_EQ(drawn[i].hash[c], hash[c]) << "key " << i << " component " << c;
             ASSERT_EQ(drawn[i].random[c], float(bits[c] >> 8) / 16777216.0f) << "key " << i << " component " << c;

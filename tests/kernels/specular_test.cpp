@@ -1,5 +1,5 @@
 // Lobes of width 0: Fresnel's equations, the choice between the two lobes of a dielectric and the directions behind
-// mirrors and dielectrics, against reference/fresnel in double.
+// mirrors and dielectrics, against oracle/fresnel in double.
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@
 #include <gtest/gtest.h>
 
 #include "kernels/probe.h"
-#include "reference/fresnel.h"
-#include "support/gpu.h"
+#include "oracle/fresnel.h"
+#include "support/device/gpu.h"
 
 namespace vkcppm::test {
 namespace {
@@ -63,7 +63,7 @@ Range reflectance_range(double cosine, double ior_ratio) {
     Range range;
     for (const double c : {-2.4e-7, 0.0, 2.4e-7}) {
         for (const double n : {-2.4e-7, 0.0, 2.4e-7}) {
-            const double r = reference::fresnel_dielectric(std::clamp(cosine + c, 0.0, 1.0), ior_ratio * (1.0 + n));
+            const double r = oracle::fresnel_dielectric(std::clamp(cosine + c, 0.0, 1.0), ior_ratio * (1.0 + n));
             range.low = std::min(range.low, r);
             range.high = std::max(range.high, r);
         }
@@ -141,7 +141,7 @@ TEST_F(Specular, ReflectancesAreFresnels) {
     for (std::size_t i = 0; i < inputs.size(); ++i) {
         const double cosine =
             std::clamp(-glm::dot(glm::dvec3(inputs[i].direction), glm::dvec3(inputs[i].normal)), 0.0, 1.0);
-        const glm::dvec3 metal = reference::fresnel_metal(gold, cosine);
+        const glm::dvec3 metal = oracle::fresnel_metal(gold, cosine);
         if (inputs[i].material == mirror_material) {
             for (int c = 0; c < 3; ++c) ASSERT_NEAR(outputs[i].facet[c], metal[c], 2e-6) << describe(inputs[i]);
             continue;
@@ -193,7 +193,7 @@ TEST_F(Specular, DirectionsObeySnellAndThroughputsTheSquaredIndex) {
             ASSERT_LE(outputs[i].probability, chance.high + 1e-6) << describe(in);
             ASSERT_LT(glm::distance(out, d + 2.0 * cosine * n), 1e-5) << describe(in);
             if (in.material == mirror_material) {
-                const glm::dvec3 factor = reference::fresnel_metal(gold, cosine);
+                const glm::dvec3 factor = oracle::fresnel_metal(gold, cosine);
                 ASSERT_LT(glm::distance(glm::dvec3(outputs[i].factor), factor), 5e-6) << describe(in);
             } else {
                 ASSERT_EQ(outputs[i].factor, glm::vec3(outputs[i].reflectance)) << describe(in);

@@ -9,11 +9,11 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "kernels/probe.h"
-#include "reference/octahedral.h"
 #include "flat/flatten.h"
-#include "support/gpu.h"
-#include "support/shapes.h"
+#include "kernels/probe.h"
+#include "oracle/octahedral.h"
+#include "support/device/gpu.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {
@@ -29,7 +29,7 @@ class SurfaceAtHit : public GpuTest {};
 Scene tilted_triangles(std::mt19937& random) {
     std::uniform_real_distribution<double> place(-1.0, 1.0);
     Scene scene;
-    const auto material = add_diffuse(scene, glm::vec3(0.5f));
+    const auto material = add_material(scene, lambert(glm::vec3(0.5f)));
     for (int i = 0; i < 200; ++i) {
         const double size = std::pow(10.0, -2.0 * std::abs(place(random)));
         const auto offset = [&] { return size * glm::dvec3(place(random), place(random), place(random)); };
@@ -103,9 +103,9 @@ TEST_F(SurfaceAtHit, LiesOnItsPlaneAndFacesTheRay) {
                 ++smooth;
                 const double u = glm::dot(glm::cross(p - v0, e2), cross) / glm::dot(cross, cross);
                 const double v = glm::dot(glm::cross(e1, p - v0), cross) / glm::dot(cross, cross);
-                glm::dvec3 n = glm::normalize((1.0 - u - v) * reference::unpack_direction(shading.normal[0]) +
-                                              u * reference::unpack_direction(shading.normal[1]) +
-                                              v * reference::unpack_direction(shading.normal[2]));
+                glm::dvec3 n = glm::normalize((1.0 - u - v) * oracle::unpack_direction(shading.normal[0]) +
+                                              u * oracle::unpack_direction(shading.normal[1]) +
+                                              v * oracle::unpack_direction(shading.normal[2]));
                 if (!front) n = -n;
                 if (std::abs(glm::dot(n, d)) > 1e-3) {
                     const bool away = glm::dot(n, d) > 0.0;

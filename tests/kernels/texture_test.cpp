@@ -1,4 +1,4 @@
-// Textures looked up on the device, and what they make of a surface, against reference/texture and reference/surface in
+// Textures looked up on the device, and what they make of a surface, against oracle/texture and oracle/surface in
 // double.
 
 #include <algorithm>
@@ -12,13 +12,13 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "kernels/probe.h"
-#include "reference/surface.h"
-#include "reference/texture.h"
 #include "flat/features.h"
 #include "flat/flatten.h"
-#include "support/gpu.h"
-#include "support/shapes.h"
+#include "kernels/probe.h"
+#include "oracle/surface.h"
+#include "oracle/texture.h"
+#include "support/device/gpu.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {
@@ -112,7 +112,7 @@ TEST_F(Textures, LookupsAreTheReferences) {
 
     std::uniform_real_distribution<float> near(-2.5f, 2.5f);
     std::vector<gpu::TextureInput> inputs;
-    std::vector<std::pair<std::size_t, reference::Encoding>> uses;
+    std::vector<std::pair<std::size_t, oracle::Encoding>> uses;
     const auto add = [&](std::size_t index, const glm::vec2& uv) {
         for (const int slot : {TEXTURE_BASE_COLOR, TEXTURE_METALLIC_ROUGHNESS}) {
             gpu::TextureInput input{};
@@ -120,8 +120,7 @@ TEST_F(Textures, LookupsAreTheReferences) {
             input.coordinates = textures[index].uv_set == 0 ? glm::vec4(uv, other) : glm::vec4(other, uv);
             input.texture = flat.materials[index].texture[slot];
             inputs.push_back(input);
-            uses.emplace_back(index,
-                              slot == TEXTURE_BASE_COLOR ? reference::Encoding::srgb : reference::Encoding::linear);
+            uses.emplace_back(index, slot == TEXTURE_BASE_COLOR ? oracle::Encoding::srgb : oracle::Encoding::linear);
         }
     };
     for (std::size_t index = 0; index < textures.size(); ++index) {
@@ -159,7 +158,7 @@ TEST_F(Textures, LookupsAreTheReferences) {
             }
         }
         ++compared;
-        const glm::dvec4 want = reference::lookup(texture, image, uv, encoding);
+        const glm::dvec4 want = oracle::lookup(texture, image, uv, encoding);
         for (int c = 0; c < 4; ++c) {
             ASSERT_NEAR(outputs[i].value[c], want[c], 3e-6 + (texture.nearest ? 0.0 : 2.0 * rounding)) << fmt::format(
                 "{} x {}, wraps {} {}, {}, set {}, {}, uv ({:.9g}, {:.9g}), channel {}", image.size.width,
@@ -264,7 +263,7 @@ TEST_F(Textures, SurfacesAreTheReferences) {
             const auto& out = outputs[i];
             const std::uint32_t source = flat.bvh.order[in.triangle];
             const double b = in.barycentric.x, c = in.barycentric.y;
-            const reference::Hit hit{0.0, {1.0 - b - c, b, c}, source};
+            const oracle::Hit hit{0.0, {1.0 - b - c, b, c}, source};
             const Material& material = scene.materials[scene.triangles[source].material];
             // On the edge of a texel, rounding of the coordinates decides.
             bool edge = false;
@@ -275,12 +274,12 @@ TEST_F(Textures, SurfacesAreTheReferences) {
                   &material.clearcoat_normal_texture}) {
                 const Extent size = scene.images[(*texture)->image].size;
                 const glm::dvec2 place =
-                    reference::uv_at(scene, hit, (*texture)->uv_set) * glm::dvec2(size.width, size.height);
+                    oracle::uv_at(scene, hit, (*texture)->uv_set) * glm::dvec2(size.width, size.height);
                 const glm::dvec2 gap = glm::abs(place - glm::round(place));
                 edge = edge || ((*texture)->nearest && std::min(gap.x, gap.y) < 1e-5);
             }
             if (edge) continue;
-            const reference::Surface want = reference::surface_at(scene, hit, glm::dvec3(in.direction));
+            const oracle::Surface want = oracle::surface_at(scene, hit, glm::dvec3(in.direction));
             const std::string line = fmt::format("triangle {} of material {}, barycentrics ({}, {}), {}", source,
                                                  scene.triangles[source].material, b, c, want.front ? "front" : "back");
             // Vertex colours are half floats: 11 bits.
@@ -298,7 +297,7 @@ TEST_F(Textures, SurfacesAreTheReferences) {
             expect("specular", out.metal[3], want.bsdf.specular, 1e-5);
             expect("clearcoat", out.clearcoat[0], want.bsdf.coat, 1e-5);
             expect("clearcoat alpha", out.clearcoat[1] * out.clearcoat[1], want.bsdf.coat_alpha, 1e-5);
-            const double coverage = reference::coverage(scene, hit);
+            const double coverage = oracle::coverage(scene, hit);
             if (material.alpha != Material::Alpha::mask || std::abs(out.value.a - material.alpha_cutoff) > 1e-3) {
                 expect("coverage", out.coverage, coverage, 5e-4);
                 missing += coverage == 0.0 ? 1 : 0;

@@ -13,12 +13,12 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "kernels/probe.h"
-#include "reference/embree.h"
-#include "reference/intersect.h"
 #include "flat/flatten.h"
-#include "support/gpu.h"
-#include "support/shapes.h"
+#include "kernels/probe.h"
+#include "oracle/embree.h"
+#include "oracle/intersect.h"
+#include "support/device/gpu.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {
@@ -33,7 +33,7 @@ constexpr std::uint32_t step_budget = 7000;                   // below the loop 
 // A ray passes an edge undecidably close within this distance, frame units: rounding of the intersection.
 constexpr double edge_distance = 1e-6;
 
-/// The triangles that the kernels see, in leaf order, as a scene for the reference.
+/// The triangles that the kernels see, in leaf order, as a scene for the oracle.
 Scene as_uploaded(const FlatScene& flat) {
     Scene scene;
     scene.materials.emplace_back();
@@ -118,7 +118,7 @@ private:
         return corners;
     }
 
-    reference::Embree embree_;
+    oracle::Embree embree_;
 };
 
 class Trace : public GpuTest {
@@ -260,7 +260,7 @@ TEST_F(Trace, FindsTheNearestHitThatAllTrianglesHave) {
     for (const Soup& soup : soups()) {
         SCOPED_TRACE(soup.name);
         Scene made;
-        add_diffuse(made, glm::vec3(0.5f));
+        add_material(made, lambert(glm::vec3(0.5f)));
         for (int i = 0; i < soup.triangles; ++i) soup.add(made, i, random);
         const FlatScene flat = flatten(made);
         const Scene scene = as_uploaded(flat);
@@ -271,8 +271,7 @@ TEST_F(Trace, FindsTheNearestHitThatAllTrianglesHave) {
         for (std::size_t i = 0; i < rays.size(); ++i) {
             ASSERT_NE(outputs[i].found, found_unfinished) << "ray " << i;
             const Answer got{outputs[i].found == found_hit, outputs[i].t, outputs[i].triangle};
-            const auto exact =
-                reference::nearest_hit(scene, {glm::dvec3(rays[i].origin), glm::dvec3(rays[i].direction)});
+            const auto exact = oracle::nearest_hit(scene, {glm::dvec3(rays[i].origin), glm::dvec3(rays[i].direction)});
             const Answer want = exact ? Answer{true, exact->t, exact->triangle} : Answer{};
             const Answer other = embree.nearest(rays[i]);
             const auto ray_text = [&] {
@@ -305,7 +304,7 @@ TEST_F(Trace, FindsTheNearestHitThatAllTrianglesHave) {
 
 TEST_F(Trace, AnEmptySceneIsMissed) {
     Scene scene;
-    add_diffuse(scene, glm::vec3(0.5f));
+    add_material(scene, lambert(glm::vec3(0.5f)));
     for (const auto& output : trace(flatten(scene), {{{0, 0, 0}, {0, 0, 1}}, {{1, 2, 3}, {0, -1, 0}}})) {
         EXPECT_EQ(output.found, 0u);
     }
@@ -314,11 +313,11 @@ TEST_F(Trace, AnEmptySceneIsMissed) {
 TEST_F(Trace, ClosedMeshesLetNothingOut) {
     const auto sphere = [](int levels) {
         Scene scene;
-        add_sphere(scene, {0.3, -0.2, 0.1}, 1.0, levels, add_diffuse(scene, glm::vec3(0.5f)), false);
+        add_sphere(scene, {0.3, -0.2, 0.1}, 1.0, levels, add_material(scene, lambert(glm::vec3(0.5f))), false);
         return scene;
     };
     Scene cube;
-    add_box(cube, {-1, -0.5, -0.7}, {1, 0.8, 0.9}, add_diffuse(cube, glm::vec3(0.5f)), true);
+    add_box(cube, {-1, -0.5, -0.7}, {1, 0.8, 0.9}, add_material(cube, lambert(glm::vec3(0.5f))), true);
     Scene turned = cube;
     for (glm::dvec3& p : turned.positions) {
         p = glm::dvec3(0.6 * p.x - 0.8 * p.y, 0.8 * p.x + 0.6 * p.y, p.z);
@@ -392,7 +391,7 @@ TEST_F(Trace, TheAnswerDoesNotDependOnTheSizeOfAReference) {
 
 TEST_F(Trace, OutOfStepsSaysSo) {
     Scene scene;
-    add_sphere(scene, {0, 0, 0}, 1.0, 4, add_diffuse(scene, glm::vec3(0.5f)), false);
+    add_sphere(scene, {0, 0, 0}, 1.0, 4, add_material(scene, lambert(glm::vec3(0.5f))), false);
     const FlatScene flat = flatten(scene);
     Probe probe("trace", trace_words, flat.bvh.stack);
     probe.input(Binding::nodes, flat.bvh.nodes);

@@ -1,4 +1,4 @@
-// The update kernel on random states: the schedules and cppm's decision against reference/estimator, the film's sum
+// The update kernel on random states: the schedules and cppm's decision against oracle/estimator, the film's sum
 // against doubles. statistical/estimator_update_test.cpp holds the estimators with statistics of their own to account.
 
 #include <algorithm>
@@ -17,21 +17,21 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "reference/estimator.h"
+#include "oracle/estimator.h"
 #include "render/estimators.h"
 #include "render/kernels.h"
 #include "render/scene_buffers.h"
-#include "support/gpu.h"
+#include "support/device/gpu.h"
+#include "support/device/rig.h"
 #include "support/names.h"
-#include "support/rig.h"
-#include "support/shapes.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {
 
 constexpr Extent size{400, 250};  // 10^5 states
 
-/// What the reference says of one pixel; none where its p-values are too near the significance to decide in floats.
+/// What the oracle says of one pixel; none where its p-values are too near the significance to decide in floats.
 struct Wanted {
     double area_factor = 1.0;
     double batch_factor = 1.0;
@@ -46,31 +46,31 @@ struct State {
 using Rule = std::function<std::optional<Wanted>(const State&, const Settings&)>;
 
 std::optional<Wanted> decide_cppm(const State& state, const Settings& settings) {
-    const reference::Cells cells{settings.rings, settings.sectors};
+    const oracle::Cells cells{settings.rings, settings.sectors};
     for (std::uint32_t rings = 1; rings <= settings.rings; ++rings) {
-        const double p = reference::constant_p_value(state.tally, {rings, settings.sectors});
+        const double p = oracle::constant_p_value(state.tally, {rings, settings.sectors});
         if (std::abs(p - settings.significance) < 1e-5) return std::nullopt;
     }
-    const reference::TestParameters parameters{settings.k, settings.beta, settings.significance};
-    const auto d = reference::cppm_update(state.tally, cells, double(state.pixel.total) + state.found,
-                                          state.pixel.batch, parameters);
+    const oracle::TestParameters parameters{settings.k, settings.beta, settings.significance};
+    const auto d =
+        oracle::cppm_update(state.tally, cells, double(state.pixel.total) + state.found, state.pixel.batch, parameters);
     return Wanted{d.area_factor, d.batch_factor, d.clear, d.clear ? 0.0 : double(state.pixel.count)};
 }
 
 std::optional<Wanted> decide_sppm(const State& state, const Settings& settings) {
-    const auto u = reference::sppm_update(state.pixel.count, state.found, settings.alpha);
+    const auto u = oracle::sppm_update(state.pixel.count, state.found, settings.alpha);
     return Wanted{u.area_factor, 1.0, false, u.count};
 }
 
 std::optional<Wanted> decide_sppm_kz(const State& state, const Settings& settings) {
     const auto iteration = std::uint64_t(state.pixel.count) + 1;
-    return Wanted{reference::sppm_kz_area_factor(iteration, settings.alpha), 1.0, false, double(iteration)};
+    return Wanted{oracle::sppm_kz_area_factor(iteration, settings.alpha), 1.0, false, double(iteration)};
 }
 
 /// One rule an estimator.
 const std::map<std::string, Rule> rules = {{"cppm", decide_cppm}, {"sppm", decide_sppm}, {"sppm-kz", decide_sppm_kz}};
 
-/// Tested against the reference by EstimatorUpdate and AppmUpdate of tests/statistical.
+/// Tested against the oracle by EstimatorUpdate and AppmUpdate of tests/statistical.
 const std::set<std::string> statistical = {"appm",      "cppm-lf", "cppm-gof",  "cppm-fold",
                                            "cppm-null", "ftest",   "ftest-fold"};
 
@@ -109,7 +109,7 @@ class Update : public GpuTest, public testing::WithParamInterface<std::string> {
 
 TEST_P(Update, DecidesAsTheReference) {
     const EstimatorRow& row = find_estimator(GetParam());
-    ASSERT_TRUE(rules.contains(GetParam())) << "estimator '" << GetParam() << "' has no rule of the reference";
+    ASSERT_TRUE(rules.contains(GetParam())) << "estimator '" << GetParam() << "' has no rule of the oracle";
     const Rule& rule = rules.at(GetParam());
     for (const auto& [rings, sectors] : {std::pair(2u, 6u), std::pair(4u, 12u)}) {
         SCOPED_TRACE(fmt::format("{} rings, {} sectors", rings, sectors));

@@ -13,8 +13,8 @@
 #include <gtest/gtest.h>
 
 #include "kernels/probe.h"
-#include "support/gpu.h"
-#include "support/statistics.h"
+#include "support/device/gpu.h"
+#include "support/statistics/statistics.h"
 
 namespace vkcppm::test {
 namespace {

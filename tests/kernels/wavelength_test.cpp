@@ -1,16 +1,16 @@
-// Dispersion: wavelengths, their colours and indices, against reference/dispersion in double.
+// Dispersion: wavelengths, their colours and indices, against oracle/dispersion in double.
 
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "kernels/probe.h"
-#include "reference/dispersion.h"
 #include "flat/surface.h"
 #include "flat/textures.h"
-#include "support/gpu.h"
-#include "support/statistics.h"
+#include "kernels/probe.h"
+#include "oracle/dispersion.h"
+#include "support/device/gpu.h"
+#include "support/statistics/statistics.h"
 
 namespace vkcppm::test {
 namespace {
@@ -45,7 +45,7 @@ TEST_F(Wavelength, WeightsAverageToWhite) {
     const auto outputs = run(inputs);
     glm::dvec3 sum(0.0);
     for (std::size_t i = 0; i < steps; ++i) {
-        const glm::dvec3 want = reference::wavelength_color(1000.0 * double(inputs[i].wavelength));
+        const glm::dvec3 want = oracle::wavelength_color(1000.0 * double(inputs[i].wavelength));
         for (int c = 0; c < 3; ++c) {
             ASSERT_NEAR(outputs[i].weight[c], want[c], 1e-5) << inputs[i].wavelength << " um, channel " << c;
         }
@@ -92,7 +92,7 @@ TEST_F(Wavelength, IndicesHaveTheIndexAndTheAbbeNumberOfTheFile) {
         EXPECT_NEAR(abbe, want, want * (5e-7 / (f - c) + 1e-5));
         for (std::size_t i = 0; i < inputs.size(); ++i) {
             EXPECT_NEAR(outputs[i].index,
-                        reference::ior_at(glass.ior, glass.dispersion, 1000.0 * double(inputs[i].wavelength)), 1e-6)
+                        oracle::ior_at(glass.ior, glass.dispersion, 1000.0 * double(inputs[i].wavelength)), 1e-6)
                 << inputs[i].wavelength << " um, index " << glass.ior << ", dispersion " << glass.dispersion;
         }
     }

@@ -11,9 +11,9 @@
 #include "core/error.h"
 #include "flat/features.h"
 #include "scene/gltf/gltf.h"
+#include "support/device/rig.h"
 #include "support/names.h"
-#include "support/rig.h"
-#include "support/scenes.h"
+#include "support/scenes/scenes.h"
 
 namespace vkcppm::test {
 namespace {

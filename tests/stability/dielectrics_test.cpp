@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "reference/fresnel.h"
+#include "oracle/fresnel.h"
 #include "stability/table.h"
-#include "support/materials.h"
-#include "support/rig.h"
-#include "support/shapes.h"
+#include "support/device/rig.h"
+#include "support/scenes/materials.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {
@@ -50,18 +50,20 @@ TEST_F(Dielectrics, VanishUnderAWhiteSky) {
         add_camera(scene, eye, target, 0.5);
         return scene;
     };
-    const auto ball = [](Scene& s) { add_sphere(s, glm::dvec3(0.0), 1.0, 4, add_glass(s, 1.5f), true); };
-    const auto plate = [](Scene& s) { add_box(s, {-1, -0.01, -1}, {1, 0, 1}, add_glass(s, 1.5f), false); };
-    const auto mirror = [](Scene& s) { add_box(s, {-1, -0.01, -1}, {1, 0, 1}, add_mirror(s, glm::vec3(1.0f)), false); };
+    const auto ball = [](Scene& s) { add_sphere(s, glm::dvec3(0.0), 1.0, 4, add_material(s, glass(1.5f)), true); };
+    const auto plate = [](Scene& s) { add_box(s, {-1, -0.01, -1}, {1, 0, 1}, add_material(s, glass(1.5f)), false); };
+    const auto mirror = [](Scene& s) {
+        add_box(s, {-1, -0.01, -1}, {1, 0, 1}, add_material(s, test::mirror(glm::vec3(1.0f))), false);
+    };
     // Its lobe is narrower than directions are known; evaluated as one (lobe_width) all is dropped: 1.
     const auto narrow = [](Scene& s) {
-        add_box(s, {-1, -0.01, -1}, {1, 0, 1}, add_mirror(s, glm::vec3(1.0f)), false);
+        add_box(s, {-1, -0.01, -1}, {1, 0, 1}, add_material(s, mirror(glm::vec3(1.0f))), false);
         s.materials.back().roughness = 1e-10f;
     };
     const auto nested = [](Scene& s) {
-        add_sphere(s, glm::dvec3(0.0), 1.0, 4, add_glass(s, 1.5f), true);
-        add_sphere(s, glm::dvec3(0.0), 0.7, 4, add_glass(s, 1.33f), true);
-        add_sphere(s, glm::dvec3(0.0), 0.3, 4, add_glass(s, 1.7f), true);
+        add_sphere(s, glm::dvec3(0.0), 1.0, 4, add_material(s, glass(1.5f)), true);
+        add_sphere(s, glm::dvec3(0.0), 0.7, 4, add_material(s, glass(1.33f)), true);
+        add_sphere(s, glm::dvec3(0.0), 0.3, 4, add_material(s, glass(1.7f)), true);
     };
     expect_error("a glass ball under a white sky", deviation(picture(under_sky(ball, {0, 0, 4}, {0, 0, 0})), 1.0),
                  1e-4);
@@ -78,7 +80,7 @@ TEST_F(Dielectrics, VanishUnderAWhiteSky) {
 // Radiance within glass is n^2 times that outside.
 TEST_F(Dielectrics, RoundTheEye) {
     Scene scene;
-    add_sphere(scene, glm::dvec3(0.0), 1.0, 4, add_glass(scene, 1.5f), true);
+    add_sphere(scene, glm::dvec3(0.0), 1.0, 4, add_material(scene, glass(1.5f)), true);
     scene.environment = white_sky();
     add_camera(scene, {0, 0, 0}, {0, 0, -1}, 0.8);
     expect_error("an eye within a glass ball, against n^2", deviation(picture(scene), 2.25), 1e-4);
@@ -88,8 +90,8 @@ TEST_F(Dielectrics, RoundTheEye) {
 TEST_F(Dielectrics, RoundALight) {
     const auto lit = [](bool with_ball) {
         Scene scene;
-        add_quad(scene, {-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, add_diffuse(scene, glm::vec3(0.2f)));
-        if (with_ball) add_sphere(scene, {0, 1, 0}, 0.05, 4, add_glass(scene, 1.5f), true);
+        add_quad(scene, {-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, add_material(scene, lambert(glm::vec3(0.2f))));
+        if (with_ball) add_sphere(scene, {0, 1, 0}, 0.05, 4, add_material(scene, glass(1.5f)), true);
         add_point_light(scene, {0, 1, 0}, glm::vec3(1.0f));
         add_camera(scene, {0, 2.5, 2.5}, {0, 0, 0}, 0.8);
         return scene;
@@ -103,8 +105,8 @@ TEST_F(Dielectrics, RoundALight) {
 TEST_F(Dielectrics, BetweenADeltaLightAndAFloorSeenThroughIt) {
     const auto seen = [](bool with_glass) {
         Scene scene;
-        add_quad(scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, add_diffuse(scene, glm::vec3(0.02f)));
-        if (with_glass) add_box(scene, {-1, 0.2, -1}, {1, 0.201, 1}, add_glass(scene, 1.5f), false);
+        add_quad(scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, add_material(scene, lambert(glm::vec3(0.02f))));
+        if (with_glass) add_box(scene, {-1, 0.2, -1}, {1, 0.201, 1}, add_material(scene, glass(1.5f)), false);
         add_point_light(scene, {0.1, 3.0, 0.0}, glm::vec3(10.0f));
         add_camera(scene, {0, 2.0, 0.001}, {0, 0, 0}, 0.4);
         return scene;
@@ -123,8 +125,8 @@ TEST_F(Dielectrics, TouchingOtherSurfaces) {
     const auto block_on_floor = [](double gap) {
         Scene scene;
         // Tilted, so that its plane is one of rounded coordinates.
-        add_quad(scene, {-1, 0.1, -1}, {0, 0.3, 2}, {2, 0, 0}, add_diffuse(scene, {0.7f, 0.5f, 0.3f}));
-        const std::uint32_t glass = add_glass(scene, 1.5f);
+        add_quad(scene, {-1, 0.1, -1}, {0, 0.3, 2}, {2, 0, 0}, add_material(scene, lambert({0.7f, 0.5f, 0.3f})));
+        const std::uint32_t glass = add_material(scene, test::glass(1.5f));
         const glm::dvec3 along = glm::normalize(glm::dvec3(0, 0.3, 2)), up = glm::normalize(glm::dvec3(0, 2, -0.3));
         const glm::dvec3 corner = glm::dvec3(0, 0.1, -1) + 0.6 * along + gap * up, x(0.7, 0, 0), z = 0.8 * along,
                          y = 0.4 * up;
@@ -134,7 +136,7 @@ TEST_F(Dielectrics, TouchingOtherSurfaces) {
         add_quad(scene, corner + x, y, z, glass);
         add_quad(scene, corner, y, x, glass);
         add_quad(scene, corner + z, x, y, glass);
-        add_quad(scene, {-0.5, 2, -0.5}, {1, 0, 0}, {0, 0, 1}, add_emitter(scene, glm::vec3(4.0f)));
+        add_quad(scene, {-0.5, 2, -0.5}, {1, 0, 0}, {0, 0, 1}, add_material(scene, emitter(glm::vec3(4.0f))));
         add_camera(scene, {0.3, 1.6, 1.4}, {0.3, 0.3, 0.0}, 0.8);
         return scene;
     };
@@ -142,11 +144,12 @@ TEST_F(Dielectrics, TouchingOtherSurfaces) {
                  difference(picture(block_on_floor(0.0)), picture(block_on_floor(1e-4))), 0.03);
     const auto two_plates = [](double gap) {
         Scene scene;
-        add_quad(scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, add_diffuse(scene, {0.3f, 0.5f, 0.7f}));
-        const std::uint32_t glass = add_glass(scene, 1.5f), water = add_glass(scene, 1.33f);
+        add_quad(scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, add_material(scene, lambert({0.3f, 0.5f, 0.7f})));
+        const std::uint32_t glass = add_material(scene, test::glass(1.5f)),
+                            water = add_material(scene, test::glass(1.33f));
         add_box(scene, {-0.6, 0.13, -0.6}, {0.6, 0.37, 0.6}, glass, false);
         add_box(scene, {-0.6, 0.37 + gap, -0.6}, {0.6, 0.61 + gap, 0.6}, water, false);
-        add_quad(scene, {-0.5, 2, -0.5}, {1, 0, 0}, {0, 0, 1}, add_emitter(scene, glm::vec3(4.0f)));
+        add_quad(scene, {-0.5, 2, -0.5}, {1, 0, 0}, {0, 0, 1}, add_material(scene, emitter(glm::vec3(4.0f))));
         add_camera(scene, {0.0, 1.7, 1.0}, {0, 0.2, 0.0}, 0.7);
         return scene;
     };
@@ -154,8 +157,9 @@ TEST_F(Dielectrics, TouchingOtherSurfaces) {
                  difference(picture(two_plates(0.0)), picture(two_plates(1e-4))), 0.05);
     const auto filled = [](double gap) {
         Scene scene;
-        add_quad(scene, {-1, -1, -1}, {0, 0, 2}, {2, 0, 0}, add_diffuse(scene, {0.3f, 0.5f, 0.7f}));
-        const std::uint32_t glass = add_glass(scene, 1.5f), water = add_glass(scene, 1.33f);
+        add_quad(scene, {-1, -1, -1}, {0, 0, 2}, {2, 0, 0}, add_material(scene, lambert({0.3f, 0.5f, 0.7f})));
+        const std::uint32_t glass = add_material(scene, test::glass(1.5f)),
+                            water = add_material(scene, test::glass(1.33f));
         add_sphere(scene, glm::dvec3(0.0), 0.6, 3, glass, true);
         const std::size_t cavity = scene.triangles.size();
         add_sphere(scene, glm::dvec3(0.0), 0.5, 3, glass, true);
@@ -164,7 +168,7 @@ TEST_F(Dielectrics, TouchingOtherSurfaces) {
             for (const std::uint32_t v : scene.triangles[i].vertex) scene.normals[v] = -scene.normals[v];
         }
         add_sphere(scene, glm::dvec3(0.0), 0.5 - gap, 3, water, true);
-        add_quad(scene, {-0.5, 2, -0.5}, {1, 0, 0}, {0, 0, 1}, add_emitter(scene, glm::vec3(4.0f)));
+        add_quad(scene, {-0.5, 2, -0.5}, {1, 0, 0}, {0, 0, 1}, add_material(scene, emitter(glm::vec3(4.0f))));
         add_camera(scene, {0.0, 1.5, 1.0}, {0, 0, 0.0}, 0.7);
         return scene;
     };

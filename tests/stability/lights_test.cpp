@@ -8,9 +8,9 @@
 #include <glm/geometric.hpp>
 
 #include "stability/table.h"
-#include "support/materials.h"
-#include "support/rig.h"
-#include "support/shapes.h"
+#include "support/device/rig.h"
+#include "support/scenes/materials.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {
@@ -27,16 +27,16 @@ protected:
     /// A floor of 2 m under a square lamp of that side, which sends out the same flux whatever its side.
     static Scene under_lamp(double side) {
         Scene scene;
-        add_quad(scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, add_diffuse(scene, glm::vec3(0.5f)));
+        add_quad(scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, add_material(scene, lambert(glm::vec3(0.5f))));
         add_quad(scene, {-0.5 * side, 1, -0.5 * side}, {side, 0, 0}, {0, 0, side},
-                 add_emitter(scene, glm::vec3(float(1.0 / (side * side)))));
+                 add_material(scene, emitter(glm::vec3(float(1.0 / (side * side))))));
         add_camera(scene, {0, 3, 1.5}, {0, 0, 0}, 0.5);
         return scene;
     }
 
     /// Corners far away, so that the scene's radius is `radius`.
     static Scene with_corner(Scene scene, double radius) {
-        const std::uint32_t black = add_diffuse(scene, glm::vec3(0.0f));
+        const std::uint32_t black = add_material(scene, lambert(glm::vec3(0.0f)));
         for (const double side : {-1.0, 1.0}) {
             const glm::dvec3 corner = glm::dvec3(0.577, -0.577, 0.577) * (side * radius);
             add_triangle(scene, corner, corner - glm::dvec3(side, 0, 0), corner - glm::dvec3(0, 0, side), black);
@@ -60,7 +60,7 @@ TEST_F(HardLights, OfSmallArea) {
 TEST_F(HardLights, OfNarrowCones) {
     for (const double cone : {1e-2, 1e-4, 1e-6}) {
         Scene scene;
-        add_quad(scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, add_diffuse(scene, glm::vec3(0.5f)));
+        add_quad(scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, add_material(scene, lambert(glm::vec3(0.5f))));
         add_spot_light(scene, {0, 1, 0}, {0, -1, 0}, cone, glm::vec3(1.0f));
         add_camera(scene, {0, 3, 0.01}, {0, 0, 0}, 0.5);
         Settings settings;

@@ -12,9 +12,9 @@
 
 #include "kernels/probe.h"
 #include "stability/table.h"
-#include "support/materials.h"
-#include "support/rig.h"
-#include "support/shapes.h"
+#include "support/device/rig.h"
+#include "support/scenes/materials.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {
@@ -41,9 +41,9 @@ protected:
     /// A lamp over a floor that `add_floor` makes of material 0 at y = 0 over [-1, 1]^2.
     static Scene floor(const std::function<void(Scene&)>& add_floor) {
         Scene scene;
-        add_diffuse(scene, {0.6f, 0.5f, 0.4f});
+        add_material(scene, lambert({0.6f, 0.5f, 0.4f}));
         add_floor(scene);
-        add_quad(scene, {-0.25, 1.5, -0.25}, {0.5, 0, 0}, {0, 0, 0.5}, add_emitter(scene, glm::vec3(5.0f)));
+        add_quad(scene, {-0.25, 1.5, -0.25}, {0.5, 0, 0}, {0, 0, 0.5}, add_material(scene, emitter(glm::vec3(5.0f))));
         add_camera(scene, {0.3, 1.2, 2.0}, {0, 0, 0}, 0.8);
         return scene;
     }
@@ -98,7 +98,7 @@ TEST_F(HardMeshes, ClosedOnesAreWatertight) {
     constexpr std::size_t rays = 100000;
     const auto mesh = [](const std::function<void(Scene&)>& add) {
         Scene scene;
-        add_diffuse(scene, glm::vec3(0.5f));
+        add_material(scene, lambert(glm::vec3(0.5f)));
         add(scene);
         return scene;
     };
@@ -163,7 +163,7 @@ TEST_F(HardMeshes, WithTrianglesOfNoArea) {
                 default: add_triangle(scene, a, b, glm::mix(a, b, uniform(random)) + off, 0);
             }
         }
-        const std::uint32_t lamp = add_emitter(scene, glm::vec3(1e6f));
+        const std::uint32_t lamp = add_material(scene, emitter(glm::vec3(1e6f)));
         for (int i = 0; i < 10; ++i) add_triangle(scene, {0, 0.5, 0}, {0.1, 0.5, 0}, {0.05 + 0.01 * i, 0.5, 0}, lamp);
     }));
     expect_error("2,000 triangles without area, and lamps", difference(hard, easy), 1e-5);
@@ -195,8 +195,8 @@ TEST_F(HardMeshes, OfTwoMaterialsInOnePlace) {
     const auto sheet = [](double gap) {
         return floor([&](Scene& scene) {
             add_whole(scene);
-            const std::uint32_t red = add_diffuse(scene, {0.8f, 0.1f, 0.1f}),
-                                blue = add_diffuse(scene, {0.1f, 0.1f, 0.8f});
+            const std::uint32_t red = add_material(scene, lambert({0.8f, 0.1f, 0.1f})),
+                                blue = add_material(scene, lambert({0.1f, 0.1f, 0.8f}));
             const glm::dvec3 a(-0.7, 0.31, 0.52), b(0.73, 0.29, 0.47), c(0.11, 0.77, -0.61);
             const glm::dvec3 n = gap * glm::normalize(glm::cross(b - a, c - a));
             add_triangle(scene, a + n, b + n, c + n, red);
@@ -211,7 +211,7 @@ TEST_F(HardMeshes, OfTwoMaterialsInOnePlace) {
             const glm::dvec3 n = gap * glm::normalize(glm::dvec3(0.0, 1.0, -0.3));
             add_quad(scene, {-0.5, 0.13, -0.7}, {0, 0.3, 1.0}, {1.0, 0, 0}, 0);
             add_quad(scene, glm::dvec3(-0.25, 0.19, -0.5) + n, {0, 0.15, 0.5}, {0.5, 0, 0},
-                     add_emitter(scene, glm::vec3(2.0f)));
+                     add_material(scene, emitter(glm::vec3(2.0f))));
         });
     };
     expect_error("a lamp in the plane of a panel, against 1e-5 above it",

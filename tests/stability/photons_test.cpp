@@ -7,9 +7,9 @@
 #include <glm/geometric.hpp>
 
 #include "stability/table.h"
-#include "support/materials.h"
-#include "support/rig.h"
-#include "support/shapes.h"
+#include "support/device/rig.h"
+#include "support/scenes/materials.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {
@@ -26,7 +26,7 @@ protected:
     /// A white floor under a spot light of that cone, 1 m above it.
     static Scene floor_under_spot(double cone) {
         Scene scene;
-        add_quad(scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, add_diffuse(scene, glm::vec3(1.0f)));
+        add_quad(scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, add_material(scene, lambert(glm::vec3(1.0f))));
         add_spot_light(scene, {0, 1, 0}, {0, -1, 0}, cone, {0.1f, 1.0f / 3.0f, 0.7f});
         add_camera(scene, {0, 4, 0.001}, {0, 0, 0}, 0.45);
         return scene;
@@ -69,7 +69,7 @@ TEST_F(HardPhotons, AllInOneCell) {
 TEST_F(HardPhotons, APixelThatNeverSeesOne) {
     Scene scene = floor_under_spot(0.1);
     // A floor in the shade of a wall all round it.
-    const std::uint32_t white = add_diffuse(scene, glm::vec3(1.0f));
+    const std::uint32_t white = add_material(scene, lambert(glm::vec3(1.0f)));
     add_quad(scene, {0.6, 0.01, 0.6}, {0, 0, 0.3}, {0.3, 0, 0}, white);
     Rig rig(scene, settings_of({24, 24}, 1024), plain_device());
     rig.integrator.run(200);
@@ -94,8 +94,8 @@ TEST_F(HardPhotons, APixelThatNeverSeesOne) {
 
 TEST_F(HardPhotons, NoneIsStored) {
     Scene scene;
-    add_quad(scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, add_diffuse(scene, glm::vec3(0.5f)));
-    add_quad(scene, {-0.1, -1, -0.1}, {0, 0, 0.2}, {0.2, 0, 0}, add_emitter(scene, glm::vec3(1.0f)));
+    add_quad(scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, add_material(scene, lambert(glm::vec3(0.5f))));
+    add_quad(scene, {-0.1, -1, -0.1}, {0, 0, 0.2}, {0.2, 0, 0}, add_material(scene, emitter(glm::vec3(1.0f))));
     std::swap(scene.triangles[2].vertex[1], scene.triangles[2].vertex[2]);
     std::swap(scene.triangles[3].vertex[1], scene.triangles[3].vertex[2]);  // away from the floor
     add_camera(scene, {0, 2, 2}, {0, 0, 0}, 0.8);

@@ -8,9 +8,9 @@
 #include <glm/geometric.hpp>
 
 #include "stability/table.h"
-#include "support/materials.h"
-#include "support/rig.h"
-#include "support/shapes.h"
+#include "support/device/rig.h"
+#include "support/scenes/materials.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {

@@ -13,12 +13,12 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "reference/estimator.h"
+#include "oracle/estimator.h"
 #include "render/estimators.h"
 #include "shared/estimators.h"
 #include "stability/table.h"
-#include "support/rig.h"
-#include "support/shapes.h"
+#include "support/device/rig.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {
@@ -150,7 +150,7 @@ TEST_F(Sums, TheScheduleOfHachisukaAndJensen) {
     run_schedule(rig, 1, counted);
     double n = counted, log_radius2 = 0.0;
     for (std::uint32_t i = 0; i < launches; ++i) {
-        const auto step = reference::sppm_update(n, 1.0, double(rig.integrator.params().alpha));
+        const auto step = oracle::sppm_update(n, 1.0, double(rig.integrator.params().alpha));
         log_radius2 += std::log(step.area_factor);
         n = step.count;
     }

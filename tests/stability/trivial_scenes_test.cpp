@@ -7,9 +7,9 @@
 #include <glm/geometric.hpp>
 
 #include "stability/table.h"
-#include "support/materials.h"
-#include "support/rig.h"
-#include "support/shapes.h"
+#include "support/device/rig.h"
+#include "support/scenes/materials.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {
@@ -41,7 +41,7 @@ TEST_F(TrivialScenes, OnePixel) {
 
 TEST_F(TrivialScenes, OneTriangle) {
     Scene scene;
-    add_triangle(scene, {-50, 0, 50}, {50, 0, 50}, {0, 0, -50}, add_diffuse(scene, glm::vec3(0.5f)));
+    add_triangle(scene, {-50, 0, 50}, {50, 0, 50}, {0, 0, -50}, add_material(scene, lambert(glm::vec3(0.5f))));
     PunctualLight sun;
     sun.kind = PunctualLight::Kind::directional;
     sun.intensity = glm::vec3(2.0f);
@@ -71,7 +71,7 @@ TEST_F(TrivialScenes, NothingToSee) {
 // A convex body under a white sky reflects rho of it, everywhere.
 TEST_F(TrivialScenes, OnlyAnEnvironment) {
     Scene scene;
-    add_box(scene, {-1, -1, -1}, {1, 1, 1}, add_diffuse(scene, glm::vec3(0.5f)), false);
+    add_box(scene, {-1, -1, -1}, {1, 1, 1}, add_material(scene, lambert(glm::vec3(0.5f))), false);
     scene.environment = Environment{{4, 2}, std::vector<glm::vec3>(8, glm::vec3(1.0f))};
     add_camera(scene, {1, 1.5, 4}, {0, 0, 1}, 0.3);
     const Image image = picture(scene, {8, 8}, 32);

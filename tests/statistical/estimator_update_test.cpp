@@ -1,4 +1,4 @@
-// The update kernel of the estimators that test or adapt against the double-precision reference, on random states.
+// The update kernel of the estimators that test or adapt against the oracle in double precision, on random states.
 // A state whose p-value lies so near the significance that the kernel's floats may fall on the other side is left out
 // and counted: within 1e-5 for chi-squared; within 1e-4 for the F-tests, whose means are floats: after 10^4 samples
 // means differ significantly that share their first two digits. (Interpolating the thresholds moves p by less than
@@ -14,18 +14,18 @@
 
 #include <gtest/gtest.h>
 
-#include "reference/estimator.h"
+#include "oracle/estimator.h"
 #include "render/estimators.h"
 #include "shared/estimators.h"
-#include "support/gpu.h"
+#include "support/device/gpu.h"
+#include "support/device/synthetic_field.h"
 #include "support/names.h"
-#include "support/synthetic_field.h"
 
 namespace vkcppm::test {
 namespace {
 
-using reference::Cells;
-using reference::Decision;
+using oracle::Cells;
+using oracle::Decision;
 
 /// Uniform in the logarithm.
 double log_uniform(Random& random, double low, double high) {
@@ -137,13 +137,13 @@ using PValue = std::function<double(std::uint32_t rings)>;
 /// True where no p-value of the discs lies within `margin` of the significance.
 bool decided(const PValue& p_value, std::uint32_t rings, double margin) {
     for (; rings > 0; --rings) {
-        if (std::abs(p_value(rings) - reference::TestParameters().significance) < margin) return false;
+        if (std::abs(p_value(rings) - oracle::TestParameters().significance) < margin) return false;
     }
     return true;
 }
 
-reference::TestParameters parameters_of(const gpu::Params& params) {
-    reference::TestParameters parameters;
+oracle::TestParameters parameters_of(const gpu::Params& params) {
+    oracle::TestParameters parameters;
     parameters.k = params.k;
     parameters.beta = params.beta;
     return parameters;
@@ -154,7 +154,7 @@ Outcome compare_tally_estimator(const std::string& name, std::uint32_t rings, st
     Update update(name, rings, sectors, side);
     const std::size_t pixels = update.pixels();
     const Cells cells{rings, update.row().folded ? sectors / 2 : sectors};
-    const reference::TestParameters parameters = parameters_of(update.params());
+    const oracle::TestParameters parameters = parameters_of(update.params());
     Random random(7);
     States before;
     std::vector<std::vector<std::uint32_t>> tallies;  // as a photon falls; the kernel's are folded
@@ -166,7 +166,7 @@ Outcome compare_tally_estimator(const std::string& name, std::uint32_t rings, st
     }
     before.tally.resize(pixels * tally_rows(update.row(), rings, sectors));
     for (std::size_t pixel = 0; pixel < pixels && !before.tally.empty(); ++pixel) {
-        const auto kept = update.row().folded ? reference::fold(tallies[pixel], {rings, sectors}) : tallies[pixel];
+        const auto kept = update.row().folded ? oracle::fold(tallies[pixel], {rings, sectors}) : tallies[pixel];
         for (std::size_t bin = 0; bin < kept.size(); ++bin) before.tally[bin * pixels + pixel] = kept[bin];
     }
     const States after = update.run(before);
@@ -178,8 +178,8 @@ Outcome compare_tally_estimator(const std::string& name, std::uint32_t rings, st
         const double total = state.total + before.found[pixel];
         if (name != "cppm-null" && total >= state.batch) {
             const PValue p_value = [&](std::uint32_t inner) {
-                return name == "cppm-lf" ? reference::linear_p_value(tally, {inner, cells.sectors})
-                                         : reference::constant_p_value(tally, {inner, cells.sectors});
+                return name == "cppm-lf" ? oracle::linear_p_value(tally, {inner, cells.sectors})
+                                         : oracle::constant_p_value(tally, {inner, cells.sectors});
             };
             if (!decided(p_value, rings, 1e-5)) {
                 ++outcome.excluded;
@@ -189,10 +189,10 @@ Outcome compare_tally_estimator(const std::string& name, std::uint32_t rings, st
         const auto& tallied = tallies[pixel];
         const Cells whole{rings, sectors};
         const Decision want =
-            name == "cppm-null"   ? reference::cppm_null_update(total, state.batch, parameters)
-            : name == "cppm-lf"   ? reference::cppm_lf_update(tallied, whole, total, state.batch, parameters)
-            : name == "cppm-fold" ? reference::cppm_fold_update(tallied, whole, total, state.batch, parameters)
-                                  : reference::cppm_update(tallied, whole, total, state.batch, parameters);
+            name == "cppm-null"   ? oracle::cppm_null_update(total, state.batch, parameters)
+            : name == "cppm-lf"   ? oracle::cppm_lf_update(tallied, whole, total, state.batch, parameters)
+            : name == "cppm-fold" ? oracle::cppm_fold_update(tallied, whole, total, state.batch, parameters)
+                                  : oracle::cppm_update(tallied, whole, total, state.batch, parameters);
         outcome.compare(state, before.found[pixel], after.pixels[pixel], want, update.params());
         const auto next = column(after.tally, pixels, pixel);
         EXPECT_EQ(next, want.clear && name != "cppm-null" ? std::vector<std::uint32_t>(tally.size(), 0) : tally);
@@ -209,7 +209,7 @@ Outcome compare_f_test(const std::string& name, std::uint32_t rings, std::uint32
     const std::size_t pixels = update.pixels();
     const Cells cells{rings, update.row().folded ? sectors / 2 : sectors};
     const std::size_t n = std::size_t(cells.rings) * cells.sectors;
-    const reference::TestParameters parameters = parameters_of(update.params());
+    const oracle::TestParameters parameters = parameters_of(update.params());
     Random random(8);
     std::normal_distribution<double> normal;
     States before;
@@ -245,7 +245,7 @@ Outcome compare_f_test(const std::string& name, std::uint32_t rings, std::uint32
         const gpu::PixelState& state = before.pixels[pixel];
         const std::vector<float> kept = column(before.moments, pixels, pixel);
         const double so_far = state.count, samples = so_far + 1.0;
-        reference::FTestState statistics;
+        oracle::FTestState statistics;
         statistics.samples = std::uint32_t(samples);
         statistics.sums.resize(n);
         statistics.squares.assign(kept.begin() + 2 * n, kept.end());
@@ -257,14 +257,14 @@ Outcome compare_f_test(const std::string& name, std::uint32_t rings, std::uint32
         const double total = state.total + before.found[pixel];
         if (total >= state.batch) {
             const PValue p_value = [&](std::uint32_t inner) {
-                return reference::f_test_p_value(statistics, {inner, cells.sectors});
+                return oracle::f_test_p_value(statistics, {inner, cells.sectors});
             };
             if (!decided(p_value, rings, 1e-4)) {
                 ++outcome.excluded;
                 continue;
             }
         }
-        const Decision want = reference::f_test_update(statistics, cells, total, state.batch, parameters);
+        const Decision want = oracle::f_test_update(statistics, cells, total, state.batch, parameters);
         outcome.compare(state, before.found[pixel], after.pixels[pixel], want, update.params());
         EXPECT_EQ(after.pixels[pixel].count, want.clear ? 0.0f : float(samples));
         const std::vector<float> next = column(after.moments, pixels, pixel);
@@ -379,21 +379,21 @@ TEST_F(AppmUpdate, ChoosesTheRadiusOfTheReference) {
         const auto sum = [&](std::uint32_t row) {
             return done * moment(before, APPM_SECOND_MOMENT + row, pixel) + double(moment(before, row, pixel));
         };
-        reference::AppmState reference;
-        reference.sum_second_moment = sum(APPM_SECOND_MOMENT_NOW);
-        reference.sum_laplacian = sum(APPM_LAPLACIAN_NOW);
-        reference.iterations = std::uint64_t(done) + 1;
-        reference.photons = double(state.total) + before.found[pixel];
-        reference.first_radius = std::sqrt(done > 0 ? moment(before, APPM_FIRST_RADIUS2, pixel) : state.radius2);
+        oracle::AppmState oracle;
+        oracle.sum_second_moment = sum(APPM_SECOND_MOMENT_NOW);
+        oracle.sum_laplacian = sum(APPM_LAPLACIAN_NOW);
+        oracle.iterations = std::uint64_t(done) + 1;
+        oracle.photons = double(state.total) + before.found[pixel];
+        oracle.first_radius = std::sqrt(done > 0 ? moment(before, APPM_FIRST_RADIUS2, pixel) : state.radius2);
         // The clamps [0.1, 2] r_1 n^(-1/6) are this renderer's choice.
-        const double radius = reference::appm_radius(reference, reference::smootherstep_kernel, update.params().photons,
-                                                     0.1, 2.0, 1e-300);
+        const double radius =
+            oracle::appm_radius(oracle, oracle::smootherstep_kernel, update.params().photons, 0.1, 2.0, 1e-300);
         const double got = std::sqrt(after.pixels[pixel].radius2);
         EXPECT_NEAR(got / radius, 1.0, 1e-5)
-            << "pixel " << pixel << ": " << reference.iterations << " iterations, V " << reference.sum_second_moment
-            << ", Laplacian " << reference.sum_laplacian << ", first radius " << reference.first_radius;
-        const double unit = radius / reference.first_radius * std::pow(done + 1.0, 1.0 / 6.0);
-        ++(reference.photons < 10 ? kept : unit < 0.1000001 ? low : unit > 1.9999999 ? high : between);
+            << "pixel " << pixel << ": " << oracle.iterations << " iterations, V " << oracle.sum_second_moment
+            << ", Laplacian " << oracle.sum_laplacian << ", first radius " << oracle.first_radius;
+        const double unit = radius / oracle.first_radius * std::pow(done + 1.0, 1.0 / 6.0);
+        ++(oracle.photons < 10 ? kept : unit < 0.1000001 ? low : unit > 1.9999999 ? high : between);
         EXPECT_EQ(after.pixels[pixel].total, state.total + before.found[pixel]);
         EXPECT_EQ(after.pixels[pixel].count, float(done + 1.0));
         EXPECT_EQ(moment(after, APPM_SECOND_MOMENT_NOW, pixel), 0.0f);

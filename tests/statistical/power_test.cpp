@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "support/gpu.h"
+#include "support/device/gpu.h"
+#include "support/device/synthetic_field.h"
 #include "support/names.h"
-#include "support/synthetic_field.h"
 
 namespace vkcppm::test {
 namespace {

@@ -9,10 +9,10 @@
 
 #include <gtest/gtest.h>
 
-#include "reference/estimator.h"
+#include "oracle/estimator.h"
 #include "shared/estimators.h"
-#include "support/gpu.h"
-#include "support/synthetic_field.h"
+#include "support/device/gpu.h"
+#include "support/device/synthetic_field.h"
 
 namespace vkcppm::test {
 namespace {
@@ -147,11 +147,10 @@ TEST(Radius, AppmMomentsAreAveragesOfTheField) {
     const Field& gauss = find_field("gauss");
     SyntheticField field(plain_device(), settings_of("appm"), gauss, 40, lambda, 4);
     field.run(1);
-    const double smoothed = over_square([&](double x, double y) {
-        return gauss.density(x, y) * reference::smootherstep_kernel.value(std::hypot(x, y));
-    });
+    const double smoothed = over_square(
+        [&](double x, double y) { return gauss.density(x, y) * oracle::smootherstep_kernel.value(std::hypot(x, y)); });
     const double curved =
-        over_square([&](double x, double y) { return gauss.density(x, y) * reference::laplacian_stencil(x, y, 0.5); });
+        over_square([&](double x, double y) { return gauss.density(x, y) * oracle::laplacian_stencil(x, y, 0.5); });
     const double first = field.first_radius2();
     // A photon contributes y = pi R_1^2 / lambda; V = J E[sum y^2 K].
     const double paths = field.integrator().params().photons, unit = field.integrator().params().flux_unit;
@@ -180,13 +179,13 @@ TEST(Radius, AppmApproachesTheOptimumOnAGaussianSpot) {
         std::vector<double> ratios;
         // Laplacian -2 / sigma^2 of the spot of height 1, sigma = R_1 / 2; V as above with f = 1.
         const double best =
-            reference::appm_optimal_radius(reference::smootherstep_kernel, paths * pi * first * first / lambda,
-                                           -8.0 / (first * first), paths * iterations);
+            oracle::appm_optimal_radius(oracle::smootherstep_kernel, paths * pi * first * first / lambda,
+                                        -8.0 / (first * first), paths * iterations);
         for (std::size_t i = 0; i < states.size(); ++i) {
             const auto sum = [&](std::uint32_t row) { return double(iterations) * moments[row * states.size() + i]; };
-            const reference::AppmState state{sum(APPM_SECOND_MOMENT), sum(APPM_LAPLACIAN), iterations,
-                                             double(states[i].total), first};
-            const double want = reference::appm_radius(state, reference::smootherstep_kernel, paths, 0.1, 2.0, 1e-300);
+            const oracle::AppmState state{sum(APPM_SECOND_MOMENT), sum(APPM_LAPLACIAN), iterations,
+                                          double(states[i].total), first};
+            const double want = oracle::appm_radius(state, oracle::smootherstep_kernel, paths, 0.1, 2.0, 1e-300);
             ASSERT_NEAR(std::sqrt(states[i].radius2) / want, 1.0, 1e-5)
                 << "pixel " << i << ", iteration " << iterations;
             ratios.push_back(std::sqrt(states[i].radius2) / best);

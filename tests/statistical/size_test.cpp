@@ -10,8 +10,8 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <gtest/gtest.h>
 
-#include "support/gpu.h"
-#include "support/synthetic_field.h"
+#include "support/device/gpu.h"
+#include "support/device/synthetic_field.h"
 
 namespace vkcppm::test {
 namespace {

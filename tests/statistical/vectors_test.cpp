@@ -9,9 +9,9 @@
 
 #include <gtest/gtest.h>
 
-#include "reference/estimator.h"
-#include "support/gpu.h"
-#include "support/synthetic_field.h"
+#include "oracle/estimator.h"
+#include "support/device/gpu.h"
+#include "support/device/synthetic_field.h"
 
 namespace vkcppm::test {
 namespace {
@@ -144,7 +144,7 @@ TEST_F(Vectors, TheLinearTestFitsLinearDensities) {
     SyntheticField field = pixel("cppm-lf");
     const double threshold = field.integrator().params().threshold[1];
     // By quadrature for n_a = 2, n_s = 6 and (k1, k2) = (0.37, -0.51) / pi.
-    const std::vector<double> p = reference::linear_cell_probabilities({2, 6}, 0.37 / pi, -0.51 / pi);
+    const std::vector<double> p = oracle::linear_cell_probabilities({2, 6}, 0.37 / pi, -0.51 / pi);
     EXPECT_NEAR(p[0], 0.0857877982, 1e-9);
     EXPECT_NEAR(p[2], 0.0617471468, 1e-9);
     EXPECT_NEAR(p[8], 0.0438645643, 1e-9);
@@ -163,7 +163,7 @@ TEST_F(Vectors, TheLinearTestKeepsDensitiesPositive) {
     SyntheticField field = pixel("cppm-lf");
     // Towards the centre of the first sector, so that the direction of the fit is exact by symmetry.
     const double kx = std::cos(pi / 6.0) / pi, ky = std::sin(pi / 6.0) / pi;
-    const std::vector<double> steepest = reference::linear_cell_probabilities({2, 6}, kx, ky);
+    const std::vector<double> steepest = oracle::linear_cell_probabilities({2, 6}, kx, ky);
     Tally tally;
     for (const double p : steepest) {
         tally.push_back(std::uint32_t(std::lround(12000.0 * std::max(0.0, 1.5 * p - 0.5 / 12.0))));

@@ -8,8 +8,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "support/files.h"
-#include "support/temporary_folder.h"
+#include "support/files/files.h"
+#include "support/files/temporary_folder.h"
 #include "support/thrown.h"
 
 namespace vkcppm {

@@ -9,8 +9,8 @@
 
 #include "app/checkpoint_file.h"
 #include "core/fnv1a.h"
-#include "support/files.h"
-#include "support/temporary_folder.h"
+#include "support/files/files.h"
+#include "support/files/temporary_folder.h"
 #include "support/thrown.h"
 
 namespace vkcppm {

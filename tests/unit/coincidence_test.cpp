@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "flat/flatten.h"
-#include "support/shapes.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {
@@ -91,7 +91,7 @@ TEST(Coincidence, LampsAndSidesOfSheetsGoToTheirFronts) {
 // Barycentrics of needles are read off a short edge and a long one; attributes go with the corners.
 TEST(Coincidence, NeedlesStartAtTheirShortEdge) {
     Scene scene;
-    add_diffuse(scene, glm::vec3(0.5f));
+    add_material(scene, lambert(glm::vec3(0.5f)));
     add_triangle(scene, {0, 0, 1}, {0.001, 0, 0}, {0, 0, 0}, 0);
     add_triangle(scene, {0, 0, 1}, {0, 0, 0}, {-1, 0, 0}, 0);
     const FlatScene flat = flatten(scene);

@@ -12,8 +12,8 @@
 #include <gtest/gtest.h>
 
 #include "scene/diagnosis/glass.h"
-#include "support/scenes.h"
-#include "support/shapes.h"
+#include "support/scenes/scenes.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm {
 namespace {
@@ -30,9 +30,9 @@ void expect_told(const Scene& scene, const std::vector<std::string>& parts) {
 Scene lit_scene() {
     Scene scene;
     scene.file = "test.gltf";
-    test::add_glass(scene, 1.5f);
+    test::add_material(scene, test::glass(1.5f));
     scene.materials[0].name = "crystal";
-    test::add_quad(scene, {0, 9, 0}, {1, 0, 0}, {0, 0, 1}, test::add_emitter(scene, glm::vec3(10.0f)));
+    test::add_quad(scene, {0, 9, 0}, {1, 0, 0}, {0, 0, 1}, test::add_material(scene, test::emitter(glm::vec3(10.0f))));
     return scene;
 }
 
@@ -47,7 +47,7 @@ Scene glass_box(bool inwards = false) {
 TEST(Diagnosis, FindsWhatIsTooSmallBesideTheScene) {
     const auto beside = [](double size) {
         Scene scene = glass_box();
-        const std::uint32_t grey = test::add_diffuse(scene, glm::vec3(0.5f));
+        const std::uint32_t grey = test::add_material(scene, test::lambert(glm::vec3(0.5f)));
         scene.mesh_nodes.push_back({9, "plain", std::uint32_t(scene.triangles.size())});
         test::add_quad(scene, {0, -1, 0}, {0, 0, size}, {size, 0, 0}, grey);
         return scene;
@@ -243,7 +243,7 @@ TEST(Diagnosis, LetsALightBeInACavityOrInThinGlass) {
 
 TEST(Diagnosis, NamesAnEmitterInsideSolidGlass) {
     Scene scene = glass_box();
-    const std::uint32_t filament = test::add_emitter(scene, glm::vec3(1.0f));
+    const std::uint32_t filament = test::add_material(scene, test::emitter(glm::vec3(1.0f)));
     scene.materials[filament].name = "filament";
     test::add_box(scene, {0.4, 0.9, 0.9}, {0.6, 1.1, 1.1}, filament, false);
     test::add_box(scene, {0.4, 0.3, 0.3}, {0.6, 0.5, 0.5}, filament, false);
@@ -305,7 +305,7 @@ TEST(Diagnosis, NamesIntensitiesThatNoSourceHas) {
 
 TEST(Diagnosis, LooksAtMaterialsInUseOnly) {
     Scene scene = glass_box();
-    test::add_emitter(scene, glm::vec3(1e12f));
+    test::add_material(scene, test::emitter(glm::vec3(1e12f)));
     scene.materials[0].alpha = Material::Alpha::blend;
     scene.materials[0].opacity = 0.5f;
     scene.triangles.resize(2);

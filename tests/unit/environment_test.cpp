@@ -7,8 +7,8 @@
 
 #include "core/fnv1a.h"
 #include "io/exr.h"
-#include "support/files.h"
-#include "support/temporary_folder.h"
+#include "support/files/files.h"
+#include "support/files/temporary_folder.h"
 #include "support/thrown.h"
 
 namespace vkcppm {

@@ -19,8 +19,8 @@
 #include <gtest/gtest.h>
 #include <half.h>
 
-#include "support/files.h"
-#include "support/temporary_folder.h"
+#include "support/files/files.h"
+#include "support/files/temporary_folder.h"
 #include "support/thrown.h"
 
 namespace vkcppm {

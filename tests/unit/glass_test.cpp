@@ -4,13 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include "support/shapes.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm {
 namespace {
 
 std::uint32_t add_thin_glass(Scene& scene) {
-    const std::uint32_t glass = test::add_glass(scene, 1.5f);
+    const std::uint32_t glass = test::add_material(scene, test::glass(1.5f));
     scene.materials[glass].thickness = 0.0f;
     return glass;
 }
@@ -40,7 +40,7 @@ TEST(Glass, BecomesSolidOnClosedMeshesInPlace) {
 
 TEST(Glass, IsDividedWhereItsMaterialIsOnOpenMeshesToo) {
     Scene scene;
-    test::add_diffuse(scene, glm::vec3(0.5f));
+    test::add_material(scene, test::lambert(glm::vec3(0.5f)));
     const std::uint32_t glass = add_thin_glass(scene);
     scene.materials[glass].name = "pane";
     test::add_quad(scene, {5, 0, 0}, {1, 0, 0}, {0, 1, 0}, glass);
@@ -61,11 +61,11 @@ TEST(Glass, IsDividedWhereItsMaterialIsOnOpenMeshesToo) {
 
 TEST(Glass, StaysAsItIsElsewhere) {
     Scene scene;
-    const std::uint32_t solid = test::add_glass(scene, 1.5f);
+    const std::uint32_t solid = test::add_material(scene, test::glass(1.5f));
     scene.materials[solid].thickness = 0.25f;
     test::add_box(scene, {0, 0, 0}, {1, 1, 1}, solid, false);
     test::add_quad(scene, {5, 0, 0}, {1, 0, 0}, {0, 1, 0}, add_thin_glass(scene));
-    test::add_box(scene, {2, 0, 0}, {3, 1, 1}, test::add_diffuse(scene, glm::vec3(0.5f)), false);
+    test::add_box(scene, {2, 0, 0}, {3, 1, 1}, test::add_material(scene, test::lambert(glm::vec3(0.5f))), false);
     make_glass_solid(scene);
     ASSERT_EQ(scene.materials.size(), 3u);
     EXPECT_EQ(scene.materials[0].thickness, 0.25f);

@@ -12,9 +12,9 @@
 #include <nlohmann/json.hpp>
 
 #include "scene/gltf/gltf.h"
-#include "support/files.h"
-#include "support/scenes.h"
-#include "support/soundness.h"
+#include "support/files/files.h"
+#include "support/hostile/soundness.h"
+#include "support/scenes/scenes.h"
 #include "support/thrown.h"
 
 namespace vkcppm {

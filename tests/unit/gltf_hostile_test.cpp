@@ -11,8 +11,8 @@
 
 #include "scene/gltf/gltf.h"
 #include "scene/gltf/limits.h"
-#include "support/loading.h"
-#include "support/temporary_folder.h"
+#include "support/files/temporary_folder.h"
+#include "support/scenes/loading.h"
 #include "support/thrown.h"
 
 namespace vkcppm {

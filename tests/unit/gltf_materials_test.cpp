@@ -12,8 +12,8 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
-#include "support/loading.h"
-#include "support/pictures.h"
+#include "support/files/pictures.h"
+#include "support/scenes/loading.h"
 #include "support/thrown.h"
 
 namespace vkcppm {

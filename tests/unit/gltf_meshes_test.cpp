@@ -13,8 +13,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "support/loading.h"
-#include "support/pictures.h"
+#include "support/files/pictures.h"
+#include "support/scenes/loading.h"
 
 namespace vkcppm {
 namespace {

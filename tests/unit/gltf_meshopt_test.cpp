@@ -15,8 +15,8 @@
 #include <gtest/gtest.h>
 #include <meshoptimizer.h>
 
-#include "support/loading.h"
-#include "support/pictures.h"
+#include "support/files/pictures.h"
+#include "support/scenes/loading.h"
 
 namespace vkcppm {
 namespace {

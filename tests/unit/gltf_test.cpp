@@ -12,7 +12,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "support/loading.h"
+#include "support/scenes/loading.h"
 
 namespace vkcppm {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "support/files.h"
+#include "support/files/files.h"
 
 namespace vkcppm {
 namespace {

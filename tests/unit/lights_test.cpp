@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "flat/flatten.h"
-#include "support/shapes.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 // So that the same random numbers choose the same light, whatever tree is built over the triangles.
 TEST(Lights, StandInTheOrderOfTheScene) {
     Scene scene;
-    const auto emitter = add_emitter(scene, glm::vec3(1.0f));
+    const auto emitter = add_material(scene, test::emitter(glm::vec3(1.0f)));
     std::mt19937 random(1);
     std::uniform_real_distribution<double> place(-1.0, 1.0);
     for (int i = 0; i < 100; ++i) {

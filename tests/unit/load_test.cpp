@@ -6,9 +6,9 @@
 
 #include "io/exr.h"
 #include "scene/gltf/gltf.h"
-#include "support/files.h"
-#include "support/gltf_builder.h"
-#include "support/temporary_folder.h"
+#include "support/files/files.h"
+#include "support/files/temporary_folder.h"
+#include "support/scenes/gltf_builder.h"
 #include "support/thrown.h"
 
 namespace vkcppm {

@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "app/options.h"
-#include "study/reference.h"
 #include "render/render.h"
-#include "support/scenes.h"
+#include "study/reference.h"
+#include "support/scenes/scenes.h"
 #include "support/thrown.h"
 
 namespace vkcppm {

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
-#include "support/pictures.h"
+#include "support/files/pictures.h"
 
 namespace vkcppm {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "support/variable.h"
+#include "support/files/variable.h"
 
 namespace vkcppm {
 namespace {

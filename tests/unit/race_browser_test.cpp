@@ -15,10 +15,10 @@
 #include "app/race/page.h"
 #include "app/race/pictures.h"
 #include "app/race/record.h"
-#include "support/files.h"
-#include "support/process.h"
-#include "support/race_result.h"
-#include "support/temporary_folder.h"
+#include "support/files/files.h"
+#include "support/files/process.h"
+#include "support/files/temporary_folder.h"
+#include "unit/race_result.h"
 
 namespace vkcppm {
 namespace {

@@ -14,7 +14,7 @@
 #include "app/race/pictures.h"
 #include "app/race/record.h"
 #include "core/metrics.h"
-#include "support/race_result.h"
+#include "unit/race_result.h"
 
 namespace vkcppm {
 namespace {

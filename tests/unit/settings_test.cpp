@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "render/render.h"
-#include "support/shapes.h"
+#include "support/scenes/shapes.h"
 #include "support/thrown.h"
 
 namespace vkcppm {

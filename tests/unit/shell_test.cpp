@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "support/shapes.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm {
 namespace {
@@ -23,7 +23,7 @@ std::vector<Shell> shells_of(const Scene& scene) { return find_shells(scene, all
 /// A box of 1 x 2 x 3 m; every triangle has vertices of its own.
 Scene box_scene(bool inwards = false) {
     Scene scene;
-    test::add_box(scene, {1.0, 0.0, -1.0}, {2.0, 2.0, 2.0}, test::add_glass(scene, 1.5f), inwards);
+    test::add_box(scene, {1.0, 0.0, -1.0}, {2.0, 2.0, 2.0}, test::add_material(scene, test::glass(1.5f)), inwards);
     return scene;
 }
 
@@ -48,7 +48,7 @@ TEST(Shell, TurnedInsideOutHasANegativeVolume) {
 
 TEST(Shell, OfASphereWithSeamsIsClosed) {
     Scene scene;
-    test::add_sphere(scene, {5.0, 6.0, 7.0}, 2.0, 4, test::add_glass(scene, 1.5f), true);
+    test::add_sphere(scene, {5.0, 6.0, 7.0}, 2.0, 4, test::add_material(scene, test::glass(1.5f)), true);
     const std::vector<Shell> shells = shells_of(scene);
     ASSERT_EQ(shells.size(), 1u);
     EXPECT_TRUE(shells[0].is_closed()) << shells[0].open_edges << " open, " << shells[0].twisted_edges << " twisted";
@@ -79,7 +79,7 @@ TEST(Shell, WithAFaceTurnedOverIsTwisted) {
 
 TEST(Shell, OfTwoSheetsThatLieOnOneAnotherIsFlat) {
     Scene scene;
-    const std::uint32_t glass = test::add_glass(scene, 1.5f);
+    const std::uint32_t glass = test::add_material(scene, test::glass(1.5f));
     const glm::dvec3 corner(0.3, 0.1, 0.7), u(1.0, 0.2, 0.1), v(-0.3, 0.9, 0.4);
     test::add_quad(scene, corner, u, v, glass);
     test::add_triangle(scene, corner, corner + u + v, corner + u, glass);
@@ -104,7 +104,7 @@ TEST(Shell, IsAPieceForItself) {
 
 TEST(Shell, StaysClosedWhereBoxesShareAnEdge) {
     Scene scene;
-    test::add_glass(scene, 1.5f);
+    test::add_material(scene, test::glass(1.5f));
     test::add_box(scene, {0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}, 0, false);
     test::add_box(scene, {1.0, 1.0, 0.0}, {2.0, 2.0, 1.0}, 0, false);
     const std::vector<Shell> shells = shells_of(scene);
@@ -153,7 +153,7 @@ TEST(Shell, WindsOnceAroundWhatIsInside) {
 
 TEST(Shell, WindsHalfAroundAPointOnAnyOfItsFaces) {
     Scene scene;
-    test::add_sphere(scene, {5.1, 6.2, 7.3}, 2.0, 2, test::add_glass(scene, 1.5f), false);
+    test::add_sphere(scene, {5.1, 6.2, 7.3}, 2.0, 2, test::add_material(scene, test::glass(1.5f)), false);
     const Shell shell = shells_of(scene).at(0);
     for (const Triangle& triangle : scene.triangles) {
         const auto& [a, b, c] = triangle.vertex;

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <string>
 
-#include "support/hostile_input.h"
-#include "support/mutation.h"
+#include "support/hostile/hostile_input.h"
+#include "support/hostile/mutation.h"
 
 using namespace vkcppm::test;
 

@@ -1,0 +1,47 @@
+#include "support/device/gpu.h"
+
+namespace vkcppm::test {
+
+Device& device() {
+    static Device shared(Device::Options{.select = "", .validate = true});
+    return shared;
+}
+
+Device& plain_device() {
+    static Device shared(Device::Options{.select = "", .validate = false});
+    return shared;
+}
+
+void GpuTest::SetUp() {
+    ASSERT_TRUE(device().validating());
+    messages_before_ = device().validation_messages().size();
+}
+
+void GpuTest::TearDown() {
+    const std::vector<std::string> messages = device().validation_messages();
+    for (std::size_t i = messages_before_; i < messages.size(); ++i) ADD_FAILURE() << messages[i];
+}
+
+Probe::Probe(std::string name, std::span<const std::uint32_t> spirv, std::uint32_t stack, std::uint32_t features,
+             std::uint32_t node_bits)
+    : bindings_(device()),
+      commands_(device(), bindings_, 16),
+      kernel_(device(), bindings_, std::move(name), spirv,
+              {{SPEC_WORKGROUP, 64}, {SPEC_STACK, stack}, {SPEC_FEATURES, features}, {SPEC_NODE_BITS, node_bits}}) {
+    create(Binding::params, sizeof(gpu::Params));
+    create(Binding::status, sizeof(gpu::Status));
+}
+
+void Probe::create(Binding binding, std::uint64_t bytes) {
+    buffers_.erase(binding);
+    buffers_.emplace(binding, Buffer(device(), binding, bytes));
+    bindings_.bind(binding, buffers_.at(binding));
+}
+
+void Probe::run(std::uint64_t invocations, const gpu::Launch& launch) {
+    commands_.begin();
+    commands_.launch(kernel_, invocations, launch);
+    commands_.finish();
+}
+
+}  // namespace vkcppm::test

@@ -1,0 +1,154 @@
+#include "support/statistics/blocks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <boost/math/distributions/students_t.hpp>
+#include <fmt/format.h>
+
+#include "support/device/rig.h"
+#include "support/statistics/statistics.h"
+
+namespace vkcppm::test {
+namespace {
+
+/// Mean of a channel over a block of every picture: mean and variance of that mean.
+std::pair<double, double> moments(const Pictures& pictures, std::uint32_t x0, std::uint32_t y0, std::uint32_t side,
+                                  int channel) {
+    std::vector<double> means;
+    for (const Image& image : pictures) {
+        double sum = 0.0;
+        for (std::uint32_t y = y0; y < y0 + side; ++y) {
+            for (std::uint32_t x = x0; x < x0 + side; ++x) sum += image.at(x, y)[channel];
+        }
+        means.push_back(sum / (double(side) * side));
+    }
+    const double n = double(means.size());
+    double mean = 0.0, square = 0.0;
+    for (const double m : means) mean += m / n;
+    for (const double m : means) square += (m - mean) * (m - mean);
+    return {mean, square / (n - 1.0) / n};
+}
+
+/// Welch's test, two-sided, of a difference beyond `allowed`.
+double p_value(double difference, double allowed, double v1, double v2, double n) {
+    const double beyond = std::abs(difference) - allowed;
+    if (beyond <= 0.0) return 1.0;
+    if (v1 + v2 == 0.0) return 0.0;
+    const double freedom = (v1 + v2) * (v1 + v2) / ((v1 * v1 + v2 * v2) / (n - 1.0));
+    return 2.0 * cdf(complement(boost::math::students_t(freedom), beyond / std::sqrt(v1 + v2)));
+}
+
+Image render_photons(const Scene& scene, const Settings& settings) {
+    Rig run(scene, settings, plain_device());
+    run.integrator.run(settings.iterations);
+    return run.integrator.resolve();
+}
+
+}  // namespace
+
+oracle::PathTracerSettings oracle_settings(const Settings& settings, std::uint32_t samples) {
+    oracle::PathTracerSettings oracle;
+    oracle.size = *settings.size;
+    oracle.samples = samples;
+    oracle.max_depth = settings.max_depth;
+    oracle.aperture = settings.aperture;
+    oracle.focus_distance = settings.focus_distance.value_or(1.0);
+    return oracle;
+}
+
+TwoWays render_two_ways(const Scene& scene, Settings settings, std::uint32_t samples, std::uint32_t seeds) {
+    oracle::PathTracerSettings oracle = oracle_settings(settings, samples);
+    TwoWays pictures;
+    for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
+        settings.seed = oracle.seed = seed;
+        pictures.photons.push_back(render_photons(scene, settings));
+        pictures.paths.push_back(oracle::path_trace(scene, oracle).mean);
+    }
+    return pictures;
+}
+
+TwoWays render_two_ways_extrapolated(const Scene& scene, Settings settings, std::uint32_t samples,
+                                     std::uint32_t seeds) {
+    TwoWays pictures = render_two_ways(scene, settings, samples, seeds);
+    settings.photons *= 4;
+    for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
+        settings.seed = seeds + seed;
+        const Image fine = render_photons(scene, settings);
+        Image& image = pictures.photons[seed - 1];
+        for (std::size_t i = 0; i < image.rgb.size(); ++i) image.rgb[i] = 2.0f * fine.rgb[i] - image.rgb[i];
+    }
+    return pictures;
+}
+
+namespace {
+
+/// Mean of a channel over a block, and the variance of that mean.
+using BlockMoments = std::function<std::pair<double, double>(std::uint32_t x0, std::uint32_t y0, int channel)>;
+/// The p-value of a difference of means beyond `allowed`, given their variances.
+using BlockTest = std::function<double(double difference, double allowed, double v1, double v2)>;
+
+BlockComparison compare(Extent size, const BlockSettings& settings, const BlockMoments& photons,
+                        const BlockMoments& paths, const BlockTest& test) {
+    const std::uint32_t columns = size.width / settings.side, rows = size.height / settings.side;
+    const double each = sidak(settings.level, std::size_t(3) * columns * rows);
+    BlockComparison result;
+    for (std::uint32_t row = 0; row < rows; ++row) {
+        for (std::uint32_t column = 0; column < columns; ++column) {
+            for (int c = 0; c < 3; ++c) {
+                const auto [m1, v1] = photons(column * settings.side, row * settings.side, c);
+                const auto [m2, v2] = paths(column * settings.side, row * settings.side, c);
+                const bool counts = std::sqrt(v2) <= settings.noise * m2;
+                const bool differs = counts && test(m1 - m2, settings.bias * m2, v1, v2) < each;
+                result.counted += counts ? 1 : 0;
+                result.differing += differs ? 1 : 0;
+                result.table += fmt::format(" {}{:.3f}({:.3f})",
+                                            differs  ? "!"
+                                            : counts ? ""
+                                                     : "?",
+                                            m1 / m2, std::sqrt(v1 + v2) / m2);
+            }
+        }
+        result.table += "\n";
+    }
+    return result;
+}
+
+}  // namespace
+
+BlockComparison compare_blocks(const TwoWays& pictures, const BlockSettings& settings) {
+    const auto of = [&](const Pictures& ones) {
+        return [&](std::uint32_t x0, std::uint32_t y0, int c) { return moments(ones, x0, y0, settings.side, c); };
+    };
+    const double n = double(pictures.paths.size());
+    return compare(pictures.photons.front().extent, settings, of(pictures.photons), of(pictures.paths),
+                   [n](double difference, double allowed, double v1, double v2) {
+                       return p_value(difference, allowed, v1, v2, n);
+                   });
+}
+
+BlockComparison compare_blocks(const oracle::PathTracing& picture, const oracle::PathTracing& paths,
+                               const BlockSettings& settings) {
+    const auto of = [&](const oracle::PathTracing& one) {
+        return [&](std::uint32_t x0, std::uint32_t y0, int c) {
+            const double n = double(settings.side) * settings.side;
+            double mean = 0.0, variance = 0.0;
+            for (std::uint32_t y = y0; y < y0 + settings.side; ++y) {
+                for (std::uint32_t x = x0; x < x0 + settings.side; ++x) {
+                    const double error = one.standard_error.at(x, y)[c];
+                    mean += one.mean.at(x, y)[c] / n;
+                    variance += error * error / (n * n);
+                }
+            }
+            return std::pair(mean, variance);
+        };
+    };
+    return compare(picture.mean.extent, settings, of(picture), of(paths),
+                   [](double difference, double allowed, double v1, double v2) {
+                       const double beyond = std::abs(difference) - allowed;
+                       return beyond <= 0.0 ? 1.0 : std::erfc(beyond / std::sqrt(2.0 * (v1 + v2)));
+                   });
+}
+
+}  // namespace vkcppm::test
