@@ -22,7 +22,7 @@ protected:
     /// What info says of the file with 256 MiB of address space, of which the program and its libraries take a third.
     ProcessResult info(const std::string& file, const std::string& options = "") const {
         return run_process(
-            {"/bin/sh", "-c", "ulimit -v 262144; exec \"$0\" info \"$1\" " + options, VKCPPM_PROGRAM, file},
+            {"/bin/sh", "-c", "ulimit -v 262144; exec \"$0\" info \"$1\" " + options, test::program(), file},
             folder_.path());
     }
 

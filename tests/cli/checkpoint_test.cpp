@@ -83,7 +83,7 @@ TEST_F(Checkpoint, SurvivesBeingKilledAtAnyMoment) {
     int hits_in_writing = 0;
     for (int kill = 0; kill < 20; ++kill) {
         Words all = words({"--iterations", "1073741823", "--checkpoint-every", "0.001ms", "-o", "a.exr"}, size);
-        all.insert(all.begin(), VKCPPM_PROGRAM);
+        all.insert(all.begin(), test::program());
         all.insert(all.end(), next.begin(), next.end());
         Process process(all, folder_.path());
         if (kill % 2 == 0) {
@@ -123,7 +123,7 @@ class CheckpointSignal : public Checkpoint, public testing::WithParamInterface<i
 
 TEST_P(CheckpointSignal, KeepsTheStateToo) {
     Words all = words({"--iterations", "1073741823", "--checkpoint", "a.ckpt", "-o", "a.exr"});
-    all.insert(all.begin(), VKCPPM_PROGRAM);
+    all.insert(all.begin(), test::program());
     Process process(all, folder_.path());
     ASSERT_TRUE(process.wait_for_message("iterations (")) << process.wait().err;
     process.send(GetParam());
@@ -265,7 +265,7 @@ TEST_F(Checkpoint, AFullDiskKeepsTheOldOneAndThePicture) {
         run_process({"/bin/sh", "-c",
                      "ulimit -f 64; exec \"$0\" \"$1\" --size 32x24 --photons 500 --iterations 6 -o a.exr "
                      "--resume a.ckpt --checkpoint-every 0.001ms",
-                     VKCPPM_PROGRAM, scene("slab_floor")},
+                     test::program(), scene("slab_floor")},
                     folder_.path());
     expect_failure(result, 73, {"a.ckpt", "cannot write"});
     EXPECT_TRUE(contains(result.err, "warning: no checkpoint after 6 iterations: cannot write a.ckpt")) << result.err;
@@ -283,7 +283,7 @@ TEST_F(Checkpoint, HashesAreTheSameForAllThreadsAndWidths) {
     for (const char* variable :
          {"LP_NUM_THREADS=1", "LP_NUM_THREADS=2", "LP_NUM_THREADS=3", "LP_NATIVE_VECTOR_WIDTH=128"}) {
         Words all = words({"--iterations", "3", "-o", "a.exr", "--hash"});
-        all.insert(all.begin(), {"/usr/bin/env", variable, VKCPPM_PROGRAM});
+        all.insert(all.begin(), {"/usr/bin/env", variable, test::program()});
         const ProcessResult result = run_process(all, folder_.path());
         expect_done(result);
         const std::vector<std::string> lines = lines_of(result.out);

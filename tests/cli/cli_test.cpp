@@ -48,7 +48,7 @@ protected:
 
     /// The same by a shell in the folder; $0 is the program, $1 a scene, for redirections.
     test::ProcessResult shell(const std::string& script) const {
-        return test::run_process({"/bin/sh", "-c", script, VKCPPM_PROGRAM, scene("caustic")}, folder_.path());
+        return test::run_process({"/bin/sh", "-c", script, test::program(), scene("caustic")}, folder_.path());
     }
 
     std::map<std::string, std::string> attributes(const std::string& name) const {
@@ -740,7 +740,7 @@ TEST_F(CliReference, RefusesAReferenceThatItCannotMeasureBy) {
 class CliSignal : public Cli, public testing::WithParamInterface<int> {};
 
 TEST_P(CliSignal, KeepsWhatThereIs) {
-    test::Process process({VKCPPM_PROGRAM, scene("caustic"), "--size", "16x12", "--photons", "500", "--time", "600s",
+    test::Process process({test::program(), scene("caustic"), "--size", "16x12", "--photons", "500", "--time", "600s",
                            "-o", "a.exr", "--stats", "a.json"},
                           folder_.path());
     ASSERT_TRUE(process.wait_for_message("iterations (")) << process.wait().err;
@@ -761,7 +761,7 @@ INSTANTIATE_TEST_SUITE_P(, CliSignal, testing::Values(SIGINT, SIGTERM),
 TEST_F(Cli, AnInterruptedPictureIsThatOfAsManyIterations) {
     const Words words{scene("caustic"), "--size", "16x12", "--photons", "500", "-o"};
     Words long_words = words;
-    long_words.insert(long_words.begin(), VKCPPM_PROGRAM);
+    long_words.insert(long_words.begin(), test::program());
     long_words.insert(long_words.end(), {"cut.exr", "--iterations", "1073741823"});
     test::Process process(long_words, folder_.path());
     ASSERT_TRUE(process.wait_for_message("iterations (")) << process.wait().err;

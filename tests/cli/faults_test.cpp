@@ -26,8 +26,8 @@ void PrintTo(const Fault& fault, std::ostream* stream) { *stream << fault.text; 
 class FaultLayer : public ProgramTest {
 protected:
     ProcessResult run_on(const char* fault, Words more) const {
-        Words words{"/usr/bin/env", "VK_LAYER_PATH=" VKCPPM_FAULT_LAYER, "VK_INSTANCE_LAYERS=VK_LAYER_VKCPPM_fault",
-                    std::string("VKCPPM_FAULT=") + fault, VKCPPM_PROGRAM};
+        Words words{"/usr/bin/env", "VK_LAYER_PATH=" + test::fault_layer_folder(),
+                    "VK_INSTANCE_LAYERS=VK_LAYER_VKCPPM_fault", std::string("VKCPPM_FAULT=") + fault, test::program()};
         words.insert(words.end(), more.begin(), more.end());
         return run_process(words, folder_.path());
     }

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/files/places.h"
 #include "support/files/process.h"
 #include "support/files/temporary_folder.h"
 
@@ -18,7 +19,7 @@ using Words = std::vector<std::string>;
 
 /// A scene of the project.
 inline std::string scene(const std::string& name) {
-    return (std::filesystem::path(VKCPPM_SOURCE_DIR) / "scenes" / (name + ".gltf")).string();
+    return (source_folder() / "scenes" / (name + ".gltf")).string();
 }
 
 inline std::vector<std::string> lines_of(const std::string& text) {
@@ -34,7 +35,7 @@ inline bool contains(const std::string& text, const std::string& part) { return 
 class ProgramTest : public testing::Test {
 protected:
     ProcessResult run(Words words) const {
-        words.insert(words.begin(), VKCPPM_PROGRAM);
+        words.insert(words.begin(), program());
         return run_process(words, folder_.path());
     }
 

@@ -164,7 +164,7 @@ TEST_F(RaceCli, WarnsOfAReferenceThatShowsSomethingElse) {
 
 TEST_F(RaceCli, EndsEarlyAndWritesWhatThereIs) {
     make_reference();
-    test::Process process({VKCPPM_PROGRAM, "race", scene("torus"), "-o", "out", "--reference", "ref.exr", "--photons",
+    test::Process process({test::program(), "race", scene("torus"), "-o", "out", "--reference", "ref.exr", "--photons",
                            "1000", "--time", "1h", "--seeds", "3"},
                           folder_.path());
     ASSERT_TRUE(process.wait_for_message(" left; MSE cppm "));

@@ -10,11 +10,12 @@
 #include "render/render.h"
 #include "scene/gltf/gltf.h"
 #include "support/device/gpu.h"
+#include "support/files/places.h"
 
 namespace vkcppm::test {
 namespace {
 
-const std::filesystem::path scenes = std::filesystem::path(VKCPPM_SOURCE_DIR) / "scenes";
+const std::filesystem::path scenes = source_folder() / "scenes";
 
 std::vector<std::string> expectations() {
     std::vector<std::string> names;

@@ -19,6 +19,7 @@
 #include "study/moments.h"
 #include "study/reference.h"
 #include "support/device/gpu.h"
+#include "support/files/places.h"
 #include "support/scenes/rooms.h"
 #include "support/scenes/scenes.h"
 #include "support/scenes/shapes.h"
@@ -88,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(Features, PathTracerRooms, testing::ValuesIn(material_c
 /// relative.
 void expect_regions(const std::string& name, const std::function<oracle::PathTracing(const Settings&)>& render,
                     double bias) {
-    std::ifstream file(std::filesystem::path(VKCPPM_SOURCE_DIR) / "scenes" / (name + ".expect.json"));
+    std::ifstream file(source_folder() / "scenes" / (name + ".expect.json"));
     const nlohmann::json expected = nlohmann::json::parse(file);
     Settings settings;
     settings.size = Extent{expected["size"][0], expected["size"][1]};

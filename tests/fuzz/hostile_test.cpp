@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "support/files/files.h"
+#include "support/files/places.h"
 #include "support/files/temporary_folder.h"
 #include "support/hostile/hostile_input.h"
 #include "support/hostile/mutation.h"
@@ -21,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::misbehaviour;
 
-const fs::path source = VKCPPM_SOURCE_DIR;
+const fs::path source = test::source_folder();
 
 std::vector<fs::path> files_of(const fs::path& folder) {
     std::vector<fs::path> files;

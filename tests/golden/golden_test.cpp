@@ -10,13 +10,14 @@
 #include "io/exr.h"
 #include "io/png.h"
 #include "support/device/rig.h"
+#include "support/files/places.h"
 #include "support/names.h"
 #include "support/scenes/scenes.h"
 
 namespace vkcppm::test {
 namespace {
 
-const std::filesystem::path folder = std::filesystem::path(VKCPPM_SOURCE_DIR) / "tests" / "golden";
+const std::filesystem::path folder = source_folder() / "tests" / "golden";
 
 std::vector<nlohmann::json> cases() {
     std::ifstream file(folder / "golden.json");

@@ -302,7 +302,9 @@ TEST_F(BsdfLobes, WeightsAverageToTheAlbedo) {
             const Material& m = c.material;
             const bool bare =
                 m.clearcoat == 0.0f && (m.specular == 0.0f || m.metallic == 1.0f || m.transmission == 1.0f);
-            if (bare) EXPECT_LE(mean, 1.0 + 5.0 * error) << "more light leaves than arrives";
+            if (bare) {
+                EXPECT_LE(mean, 1.0 + 5.0 * error) << "more light leaves than arrives";
+            }
         }
     });
 }

@@ -181,7 +181,9 @@ TEST_F(Gather, APixelThatFoundTooFewPhotonsTriesAgain) {
     for (std::size_t i = 0; i < after.size(); ++i) {
         still += after[i].seeded == 0 ? 1 : 0;
         ASSERT_TRUE(before[i].seeded == 0 || after[i].seeded == 1) << "pixel " << i << " lost its seed";
-        if (before[i].radius2 > 0.0f) ASSERT_LE(after[i].radius2, before[i].radius2) << "pixel " << i;
+        if (before[i].radius2 > 0.0f) {
+            ASSERT_LE(after[i].radius2, before[i].radius2) << "pixel " << i;
+        }
     }
     EXPECT_LT(still, unseeded / 2);
 }
@@ -361,7 +363,9 @@ TEST_F(Gather, DiscsOfAllSizesLookAtLevelsOfTheGridAndFindTheirPhotons) {
             << disc;
         found += of_levels[i].count;
         doubts += on_edge;
-        if (on_edge == 0) ASSERT_EQ(of_levels[i].count, count) << disc;
+        if (on_edge == 0) {
+            ASSERT_EQ(of_levels[i].count, count) << disc;
+        }
     }
     EXPECT_GT(found, 5 * discs.size());
     EXPECT_LT(doubts, discs.size() / 20);

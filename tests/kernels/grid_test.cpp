@@ -58,7 +58,9 @@ protected:
         const glm::uvec4& dims = grid.dims[0];
         ASSERT_EQ(dims.w != 0, hashed) << dims.x << " x " << dims.y << " x " << dims.z << " cells of " << grid.cell[0]
                                        << ", table of " << params.cells;
-        if (hashed) EXPECT_EQ(dims.w, params.cells - 1);
+        if (hashed) {
+            EXPECT_EQ(dims.w, params.cells - 1);
+        }
         ASSERT_EQ(grid.first[0], 0u);
         ASSERT_EQ(grid.entries, hashed ? params.cells : dims.x * dims.y * dims.z);
         ASSERT_LE(grid.entries, params.cells);

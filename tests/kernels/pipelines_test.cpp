@@ -84,7 +84,9 @@ TEST_F(Pipelines, AreWrittenWhereTheDriverKeepsAny) {
     { const PipelineCache on(fresh_, true); }
     const std::vector<std::byte> kept = fresh_.pipelines();
     ASSERT_EQ(std::filesystem::exists(file), kept.size() > 32) << kept.size() << " bytes are kept";
-    if (kept.size() > 32) EXPECT_EQ(unsealed(read_bytes(file)), kept);
+    if (kept.size() > 32) {
+        EXPECT_EQ(unsealed(read_bytes(file)), kept);
+    }
 }
 
 }  // namespace

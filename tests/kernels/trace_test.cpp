@@ -421,7 +421,9 @@ TEST_F(Trace, OutOfStepsSaysSo) {
             ASSERT_EQ(cut[i].triangle, whole[i].triangle) << "ray " << i << " with " << steps << " steps";
             ASSERT_LE(cut[i].steps, int(steps + flat.bvh.stack) + 10) << "ray " << i;
         }
-        if (steps <= 1) EXPECT_EQ(unfinished, rays.size()) << steps << " steps";
+        if (steps <= 1) {
+            EXPECT_EQ(unfinished, rays.size()) << steps << " steps";
+        }
     }
 }
 

@@ -57,7 +57,7 @@ TEST_F(Dielectrics, VanishUnderAWhiteSky) {
     };
     // Its lobe is narrower than directions are known; evaluated as one (lobe_width) all is dropped: 1.
     const auto narrow = [](Scene& s) {
-        add_box(s, {-1, -0.01, -1}, {1, 0, 1}, add_material(s, mirror(glm::vec3(1.0f))), false);
+        add_box(s, {-1, -0.01, -1}, {1, 0, 1}, add_material(s, test::mirror(glm::vec3(1.0f))), false);
         s.materials.back().roughness = 1e-10f;
     };
     const auto nested = [](Scene& s) {

@@ -310,7 +310,9 @@ TEST_P(EstimatorUpdate, DecidesAsTheReference) {
     RecordProperty("excluded", int(outcome.excluded));
     EXPECT_GT(outcome.kept, 10000u);
     EXPECT_GT(outcome.shrunk, 3000u);
-    if (GetParam() != "cppm-null") EXPECT_GT(outcome.inner, 3000u);
+    if (GetParam() != "cppm-null") {
+        EXPECT_GT(outcome.inner, 3000u);
+    }
     EXPECT_LT(outcome.excluded, many * many / 500);
 }
 

@@ -47,7 +47,9 @@ public:
         EXPECT_EQ(::setresuid(nobody, nobody, 0), 0);
     }
     ~Unprivileged() {
-        if (was_root_) EXPECT_EQ(::setresuid(0, 0, 0), 0);
+        if (was_root_) {
+            EXPECT_EQ(::setresuid(0, 0, 0), 0);
+        }
     }
 
 private:

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/diagnosis/glass.h"
+#include "support/files/places.h"
 #include "support/scenes/scenes.h"
 #include "support/scenes/shapes.h"
 
@@ -65,7 +66,7 @@ TEST(Diagnosis, FindsNothingInGoodScenes) {
 
 TEST(Diagnosis, FindsNothingInTheScenesOfTheProject) {
     std::size_t scenes = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(VKCPPM_SOURCE_DIR) / "scenes")) {
+    for (const auto& entry : std::filesystem::directory_iterator(test::source_folder() / "scenes")) {
         if (entry.path().extension() != ".gltf") continue;
         SCOPED_TRACE(entry.path());
         expect_told(test::project_scene(entry.path().stem()), {});

@@ -13,6 +13,7 @@
 
 #include "scene/gltf/gltf.h"
 #include "support/files/files.h"
+#include "support/files/places.h"
 #include "support/hostile/soundness.h"
 #include "support/scenes/scenes.h"
 #include "support/thrown.h"
@@ -23,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-const fs::path scenes = fs::path(VKCPPM_SOURCE_DIR) / "../shared/scenes";
+const fs::path scenes = test::source_folder() / "../shared/scenes";
 
 #define SKIP_WITHOUT(folder) \
     if (!fs::is_directory(folder)) GTEST_SKIP() << folder << " is not there"
@@ -48,7 +49,7 @@ std::vector<std::string> lines_of(const fs::path& file) {
 /// Every file below the folder must load, sound and with the lines that are on record for it, or be refused with its.
 void expect_recorded_lines(const fs::path& folder) {
     std::map<fs::path, std::vector<std::string>> recorded;
-    const fs::path record = fs::path(VKCPPM_SOURCE_DIR) / "tests/unit/gltf_corpus_lines.json";
+    const fs::path record = test::source_folder() / "tests/unit/gltf_corpus_lines.json";
     for (const json& group : json::parse(test::read_bytes(record))) {
         for (const json& file : group["files"]) recorded[scenes / file.get<std::string>()] = group["lines"];
     }

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "support/files/files.h"
+#include "support/files/places.h"
 
 namespace vkcppm {
 namespace {
@@ -99,7 +100,7 @@ TEST(Layering, TheRulesAllowWhatTheDesignDoes) {
 }
 
 TEST(Layering, EveryFileOfTheHostKeepsTheRules) {
-    const fs::path host = fs::path(VKCPPM_SOURCE_DIR) / "host";
+    const fs::path host = test::source_folder() / "host";
     std::set<std::string> folders;
     for (const auto& entry : fs::recursive_directory_iterator(host)) {
         if (!entry.is_regular_file()) continue;

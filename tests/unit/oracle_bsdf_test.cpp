@@ -146,7 +146,9 @@ TEST(OracleBsdf, DensityIntegratesToWhatSamplingKeeps) {
             for (int i = 0; i < samples; ++i) found += bsdf.sample(wo, random).has_value();
             const double share = double(found) / samples;
             EXPECT_NEAR(kept, share, 4.0 * std::sqrt(share * (1.0 - share) / samples) + 1e-3) << name << " " << wo.z;
-            if (name == "lambert" || name == "pane") EXPECT_GT(kept, name == "lambert" ? 0.9999 : 0.7) << name;
+            if (name == "lambert" || name == "pane") {
+                EXPECT_GT(kept, name == "lambert" ? 0.9999 : 0.7) << name;
+            }
         }
     }
 }
