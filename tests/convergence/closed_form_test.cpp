@@ -10,6 +10,7 @@
 #include "render/render.h"
 #include "scene/gltf/gltf.h"
 #include "support/device/gpu.h"
+#include "support/files/evidence.h"
 #include "support/files/places.h"
 
 namespace vkcppm::test {
@@ -43,12 +44,15 @@ TEST_P(ClosedForm, MeanRadianceOfEveryRegion) {
     EXPECT_TRUE(rendering.warnings.empty()) << rendering.warnings.front();
 
     const double tolerance = expected["tolerance"];
+    Image wanted = rendering.image;
     for (const auto& region : expected["regions"]) {
         glm::dvec3 sum(0.0);
         std::size_t count = 0;
         for (std::uint32_t y = region["y"][0]; y < region["y"][1]; ++y) {
             for (std::uint32_t x = region["x"][0]; x < region["x"][1]; ++x, ++count) {
                 sum += glm::dvec3(rendering.image.at(x, y));
+                wanted.rgb[std::size_t(y) * wanted.extent.width + x] = {region["rgb"][0], region["rgb"][1],
+                                                                        region["rgb"][2]};
             }
         }
         for (int channel = 0; channel < 3; ++channel) {
@@ -57,6 +61,7 @@ TEST_P(ClosedForm, MeanRadianceOfEveryRegion) {
                 << region["name"] << " channel " << channel << ": ratio " << got / want << "; " << expected["formula"];
         }
     }
+    if (HasFailure()) leave_pictures(rendering.image, wanted);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ClosedForm, testing::ValuesIn(expectations()),

@@ -3,6 +3,7 @@
 #include "core/metrics.h"
 #include "io/exr.h"
 #include "support/device/rig.h"
+#include "support/files/evidence.h"
 #include "support/scenes/scenes.h"
 
 namespace vkcppm::test {
@@ -24,9 +25,11 @@ TEST_P(CornellGlass, SixtyFourIterations) {
     settings.size = Extent{256, 256};
     Rig run(load_gltf(*scene), settings);
     run.integrator.run(64);
-    const Comparison found = compare(run.integrator.resolve(), read_exr(*reference));
+    const Image got = run.integrator.resolve(), wanted = read_exr(*reference);
+    const Comparison found = compare(got, wanted);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found.mean_ratio[c], 1.0, 0.007) << "channel " << c;
     EXPECT_LE(found.relmse.trimmed, GetParam().limit);
+    if (HasFailure()) leave_pictures(got, wanted);
     RecordProperty("relmse_trim", std::to_string(found.relmse.trimmed));
 }
 

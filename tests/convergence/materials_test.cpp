@@ -8,6 +8,7 @@
 
 #include "core/metrics.h"
 #include "support/device/rig.h"
+#include "support/files/evidence.h"
 #include "support/scenes/rooms.h"
 #include "support/statistics/blocks.h"
 
@@ -28,8 +29,7 @@ TEST_P(Materials, AgreeWithPathTracing) {
     Scene scene = make_room();
     Settings settings = settings_of_rooms();
     GetParam().change(scene, settings);
-    const BlockComparison blocks = compare_blocks(render_two_ways(scene, settings, 128, 4), {.side = 8, .bias = 0.012});
-    EXPECT_EQ(blocks.differing, 0u) << "photons over paths, a block and channel:\n" << blocks.table;
+    expect_blocks_agree(render_two_ways(scene, settings, 128, 4), {.side = 8, .bias = 0.012});
 }
 
 std::string name_of(const testing::TestParamInfo<Case>& info) { return info.param.name; }
@@ -46,8 +46,10 @@ TEST_P(SmallLights, LeaveNoFireflies) {
     settings.size = Extent{96, 96};
     const Image one = valid_picture(scene, settings, settings.iterations);
     settings.seed = 2;
-    const Measure relmse = compare(one, valid_picture(scene, settings, settings.iterations)).relmse;
+    const Image other = valid_picture(scene, settings, settings.iterations);
+    const Measure relmse = compare(one, other).relmse;
     EXPECT_LT(relmse.all, 1.1 * relmse.trimmed) << "between two seeds, and without the worst 9 pixels";
+    if (HasFailure()) leave_pictures(one, other, "two seeds");
 }
 
 INSTANTIATE_TEST_SUITE_P(Rooms, SmallLights, testing::ValuesIn(small_light_cases()), name_of);

@@ -19,6 +19,7 @@
 #include "study/moments.h"
 #include "study/reference.h"
 #include "support/device/gpu.h"
+#include "support/files/evidence.h"
 #include "support/files/places.h"
 #include "support/scenes/rooms.h"
 #include "support/scenes/scenes.h"
@@ -69,16 +70,14 @@ TEST_P(PathTracerRooms, AgreeWithDoublePrecision) {
     settings.size = Extent{16, 16};
     const oracle::PathTracing paths = trace_in_double(scene, settings, samples);
     const BlockSettings exact{.side = 8, .level = 1e-4, .bias = 1e-6};
-    const BlockComparison blocks = compare_blocks(trace_on_device(scene, settings), paths, exact);
-    EXPECT_EQ(blocks.differing, 0u) << "device over double, a block and channel:\n" << blocks.table;
+    expect_blocks_agree(trace_on_device(scene, settings), paths, exact, "device over double");
 
     // Textures may be smooth somewhere, but hardly are.
     const auto smooth = [](const SurfaceTraits& t) { return t.smooth && !t.textured; };
     if (!std::ranges::any_of(traits_of(scene), smooth)) return;
     const Reference reference = refer(scene, settings, 64, 4096);
-    const BlockComparison sum =
-        compare_blocks({reference.mean, reference.standard_error}, paths, {.side = 8, .level = 1e-4, .bias = 0.004});
-    EXPECT_EQ(sum.differing, 0u) << "reference over paths, a block and channel:\n" << sum.table;
+    expect_blocks_agree({reference.mean, reference.standard_error}, paths, {.side = 8, .level = 1e-4, .bias = 0.004},
+                        "reference over paths");
     EXPECT_GT(reference.caustic_share, 0.0);
 }
 
@@ -94,6 +93,7 @@ void expect_regions(const std::string& name, const std::function<oracle::PathTra
     Settings settings;
     settings.size = Extent{expected["size"][0], expected["size"][1]};
     const oracle::PathTracing picture = render(settings);
+    Image wanted = picture.mean;
     for (const auto& region : expected["regions"]) {
         glm::dvec3 sum(0.0), variance(0.0);
         double count = 0.0;
@@ -101,6 +101,8 @@ void expect_regions(const std::string& name, const std::function<oracle::PathTra
             for (std::uint32_t x = region["x"][0]; x < region["x"][1]; ++x, ++count) {
                 const glm::dvec3 error(picture.standard_error.at(x, y));
                 sum += glm::dvec3(picture.mean.at(x, y));
+                wanted.rgb[std::size_t(y) * wanted.extent.width + x] = {region["rgb"][0], region["rgb"][1],
+                                                                        region["rgb"][2]};
                 variance += error * error;
             }
         }
@@ -112,6 +114,7 @@ void expect_regions(const std::string& name, const std::function<oracle::PathTra
                 << error / want << "; " << expected["formula"];
         }
     }
+    if (testing::Test::HasFailure()) leave_pictures(picture.mean, wanted);
 }
 
 class PathTracerClosedForm : public testing::TestWithParam<const char*> {};
@@ -166,10 +169,8 @@ TEST(Reference, LeavesWhatIsNearItsLampToPhotons) {
     scene.materials[2].roughness = 0.4f;
     const Reference reference = refer(scene, settings, 64, 16384);
     EXPECT_GT(reference.caustic_share, 0.01);
-    const BlockComparison sum =
-        compare_blocks({reference.mean, reference.standard_error}, trace_in_double(scene, settings, 1024),
-                       {.side = 8, .level = 1e-4, .bias = 0.002});
-    EXPECT_EQ(sum.differing, 0u) << "reference over paths, a block and channel:\n" << sum.table;
+    expect_blocks_agree({reference.mean, reference.standard_error}, trace_in_double(scene, settings, 1024),
+                        {.side = 8, .level = 1e-4, .bias = 0.002}, "reference over paths");
 }
 
 TEST(Reference, ErrorIsTheSpreadOfSeeds) {
@@ -222,8 +223,8 @@ TEST(Reference, SameSettingsSameBits) {
     Settings settings;
     const Scene scene = glass_room(settings);
     const Reference one = refer(scene, settings, 32, 4096), other = refer(scene, settings, 32, 4096);
-    EXPECT_EQ(one.mean.rgb, other.mean.rgb);
-    EXPECT_EQ(one.standard_error.rgb, other.standard_error.rgb);
+    expect_same_picture(other.mean, one.mean, "mean");
+    expect_same_picture(other.standard_error, one.standard_error, "standard error");
     EXPECT_EQ(one.samples, 128u);
     EXPECT_EQ(one.iterations, 32u);
 }

@@ -20,9 +20,7 @@ TEST_P(PathTracing, BlocksAgree) {
     settings.size = Extent{64, 64};
     settings.iterations = 48;
     settings.photons = 16384;
-    const BlockComparison blocks =
-        compare_blocks(render_two_ways(project_scene(GetParam()), settings, 64, 6), {.side = 16, .bias = 0.004});
-    EXPECT_EQ(blocks.differing, 0u) << "photons over paths, a block and channel:\n" << blocks.table;
+    expect_blocks_agree(render_two_ways(project_scene(GetParam()), settings, 64, 6), {.side = 16, .bias = 0.004});
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, PathTracing, testing::Values("square_light", "mirror", "spot_plane"),
@@ -42,9 +40,8 @@ TEST_P(PaperScenes, AgreeWherePathTracingConverges) {
     if (glass) scene.lights.clear();
     // The box's lamps are too small for paths to meet: there its blocks count with whatever noise they have.
     const double noise = std::string(GetParam()) == "box" ? 1.0 : 0.03;
-    const BlockComparison blocks = compare_blocks(render_two_ways_extrapolated(scene, settings, 64, 4),
-                                                  {.side = 12, .bias = 0.04, .noise = noise});
-    EXPECT_EQ(blocks.differing, 0u) << "photons over paths, a block and channel:\n" << blocks.table;
+    const BlockComparison blocks = expect_blocks_agree(render_two_ways_extrapolated(scene, settings, 64, 4),
+                                                       {.side = 12, .bias = 0.04, .noise = noise});
     EXPECT_GE(blocks.counted, 6u) << "path tracing has converged hardly anywhere:\n" << blocks.table;
 }
 

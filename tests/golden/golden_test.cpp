@@ -8,8 +8,8 @@
 
 #include "core/metrics.h"
 #include "io/exr.h"
-#include "io/png.h"
 #include "support/device/rig.h"
+#include "support/files/evidence.h"
 #include "support/files/places.h"
 #include "support/names.h"
 #include "support/scenes/scenes.h"
@@ -30,12 +30,6 @@ std::string name_of(const nlohmann::json& golden) {
 
 class Golden : public GpuTest, public testing::WithParamInterface<nlohmann::json> {};
 
-Image absolute_difference(const Image& a, const Image& b) {
-    Image difference = a;
-    for (std::size_t i = 0; i < a.rgb.size(); ++i) difference.rgb[i] = glm::abs(a.rgb[i] - b.rgb[i]);
-    return difference;
-}
-
 TEST_P(Golden, Picture) {
     const nlohmann::json& golden = GetParam();
     const std::string name = name_of(golden);
@@ -47,17 +41,10 @@ TEST_P(Golden, Picture) {
     Rig rig(project_scene(golden["scene"]), settings);
     rig.integrator.run(settings.iterations);
     const Image image = rig.integrator.resolve();
-    const Image reference = read_exr(folder / (name + ".exr"));
-    const Comparison found = compare(image, reference);
+    const Image golden_picture = read_exr(folder / (name + ".exr"));
+    const Comparison found = compare(image, golden_picture);
     EXPECT_LE(found.relmse.all, golden["tolerance"].get<double>());
-    if (HasFailure()) {
-        const auto written = std::filesystem::temp_directory_path() / ("golden_" + name);
-        write_exr(written.string() + ".exr", image);
-        write_png(written.string() + ".png", image, 0.0f);
-        write_png(written.string() + "_reference.png", reference, 0.0f);
-        write_png(written.string() + "_difference.png", absolute_difference(image, reference), 0.0f);
-        ADD_FAILURE() << "wrote " << written.string() << ".exr, .png, _reference.png and _difference.png";
-    }
+    if (HasFailure()) leave_pictures(image, golden_picture);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Golden, testing::ValuesIn(cases()),

@@ -11,6 +11,7 @@
 #include "core/metrics.h"
 #include "support/device/gpu.h"
 #include "support/device/rig.h"
+#include "support/files/evidence.h"
 #include "support/scenes/scenes.h"
 #include "support/thrown.h"
 
@@ -70,7 +71,7 @@ TEST_F(Race, AfterOneIterationThoseWithTheSameKernelAgreeToTheLastBit) {
     const Scene scene = test::project_scene("torus");
     const RaceResult result = run_race(scene, resolve_race(race, scene), black(), test::plain_device(), go_on);
     for (const RaceRun& run : result.runs) {
-        EXPECT_EQ(run.image, result.runs.front().image) << run.entrant.name;
+        test::expect_same_picture(run.image, result.runs.front().image, run.entrant.name);
         EXPECT_GT(run.curves[0].back().error.mse.all, 0.0) << "a black picture would agree with anything";
     }
 }
@@ -84,7 +85,7 @@ TEST_F(Race, EntrantsAreWhatTheyAreAlone) {
     for (const RaceRun& run : result.runs) {
         Rig alone(test::project_scene("torus"), run.entrant.settings);
         alone.integrator.run(5);
-        EXPECT_EQ(run.image, alone.integrator.resolve()) << run.entrant.name;
+        test::expect_same_picture(run.image, alone.integrator.resolve(), run.entrant.name);
         EXPECT_EQ(run.radius, alone.integrator.radii()) << run.entrant.name;
         const Curve& curve = run.curves.at(0);
         ASSERT_EQ(curve.size(), 4u) << "after 1, 2, 4 and, the end, 5 iterations";

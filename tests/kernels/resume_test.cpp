@@ -12,6 +12,7 @@
 #include "render/estimators.h"
 #include "support/device/gpu.h"
 #include "support/device/rig.h"
+#include "support/files/evidence.h"
 #include "support/names.h"
 #include "support/scenes/rooms.h"
 #include "support/scenes/shapes.h"
@@ -60,8 +61,7 @@ TEST_P(Resume, SmallStepBudgetsGiveTheSameBits) {
     for (const char* pass : {"eye", "photon", "knn", "gather"}) {
         EXPECT_GE(got.at(pass), expected.at(pass) + iterations) << pass << " was not cut into rounds";
     }
-    EXPECT_EQ(differences(whole.integrator.resolve(), cut.integrator.resolve()), 0u)
-        << "of " << whole.pixels() << " pixels";
+    expect_same_picture(cut.integrator.resolve(), whole.integrator.resolve());
     const auto a = whole.all<gpu::PixelState>(Binding::pixels), b = cut.all<gpu::PixelState>(Binding::pixels);
     for (std::size_t i = 0; i < a.size(); ++i) {
         ASSERT_EQ(std::memcmp(&a[i], &b[i], sizeof(a[i])), 0)
@@ -87,8 +87,8 @@ TEST_F(Determinism, SmallPhotonBuffersGiveTheSameBits) {
         cut.integrator.set_params(params);
         cut.integrator.run(iterations);
         EXPECT_GT(cut.integrator.params().photon_capacity, capacity) << "the buffer was never too small";
-        EXPECT_EQ(differences(expected, cut.integrator.resolve()), 0u)
-            << "of " << whole.pixels() << " pixels, capacity " << capacity << ", step budget " << budget;
+        expect_same_picture(cut.integrator.resolve(), expected,
+                            fmt::format("capacity {}, step budget {}", capacity, budget));
         Report a, b;
         whole.integrator.fill(a);
         cut.integrator.fill(b);
@@ -111,8 +111,8 @@ TEST_F(Determinism, SmallStepBudgetsGiveTheSameBitsWhereLightsAreAskedFor) {
             cut.integrator.set_params(params);
             cut.integrator.run(iterations);
             EXPECT_GT(calls(cut).at("eye"), calls(whole).at("eye")) << "the eye pass was not cut";
-            EXPECT_EQ(differences(whole.integrator.resolve(), cut.integrator.resolve()), 0u)
-                << "of " << whole.pixels() << " pixels, " << room.name << ", step budget " << budget;
+            expect_same_picture(cut.integrator.resolve(), whole.integrator.resolve(),
+                                fmt::format("{}, step budget {}", room.name, budget));
         }
     }
 }
@@ -123,7 +123,7 @@ TEST_F(Determinism, TheSameSeedGivesTheSameBitsAndAnotherSeedOthers) {
     for (std::uint32_t i = 0; i < iterations; ++i) again.integrator.run(1);
     other.integrator.run(iterations);
     const Image a = first.integrator.resolve(), b = again.integrator.resolve(), c = other.integrator.resolve();
-    EXPECT_EQ(differences(a, b), 0u) << "of " << first.pixels() << " pixels, in one submission and in " << iterations;
+    expect_same_picture(b, a, "in one submission and in several");
     EXPECT_GT(differences(a, c), first.pixels() * 9 / 10) << "of " << first.pixels() << " pixels under another seed";
 }
 
@@ -137,8 +137,7 @@ TEST_F(Determinism, EveryFormOfTheKernelsGivesTheSameBits) {
         Integrator other(whole.on_device, whole.scene.cameras.at(0), whole.settings, forms);
         other.run(iterations);
         const std::string name = fmt::format("{} forms, {} first", forms.size(), text_of(forms.front()));
-        EXPECT_EQ(differences(whole.integrator.resolve(), other.resolve()), 0u)
-            << "of " << whole.pixels() << " pixels, " << name;
+        expect_same_picture(other.resolve(), whole.integrator.resolve(), name);
         EXPECT_TRUE(expected == other.save()) << "state, " << name;
     }
 }

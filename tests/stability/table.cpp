@@ -9,6 +9,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "support/files/evidence.h"
+
 namespace vkcppm::test {
 namespace {
 
@@ -49,16 +51,17 @@ void expect_error(const std::string& name, double error, double tolerance) {
     EXPECT_LE(error, tolerance) << name;
 }
 
-double difference(const Image& a, const Image& b) {
-    assert(a.rgb.size() == b.rgb.size());
-    double squares = 0.0, reference = 0.0;
-    for (std::size_t i = 0; i < a.rgb.size(); ++i) {
-        const glm::dvec3 x(a.rgb[i]), r(b.rgb[i]);
-        squares += glm::dot(x - r, x - r);
-        reference += glm::dot(r, r);
+void expect_picture(const std::string& name, const Image& got, const Image& easy, double tolerance) {
+    assert(got.rgb.size() == easy.rgb.size());
+    double difference = 0.0, square = 0.0;
+    for (std::size_t i = 0; i < got.rgb.size(); ++i) {
+        const glm::dvec3 x(got.rgb[i]), r(easy.rgb[i]);
+        difference += glm::dot(x - r, x - r);
+        square += glm::dot(r, r);
     }
-    const double error = squares == 0.0 ? 0.0 : std::sqrt(squares / reference);
-    return std::isfinite(error) ? error : 1.0;
+    const double error = difference == 0.0 ? 0.0 : std::sqrt(difference / square);
+    expect_error(name, std::isfinite(error) ? error : 1.0, tolerance);
+    if (!(error <= tolerance)) leave_pictures(got, easy, name);
 }
 
 double mean_difference(const Image& a, const Image& b) {

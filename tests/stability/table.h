@@ -11,8 +11,9 @@ namespace vkcppm::test {
 /// Adds a row and fails the running test where `error` is above `tolerance` or no number.
 void expect_error(const std::string& name, double error, double tolerance);
 
-/// sqrt(sum |a - b|^2 / sum |b|^2) over pixels and channels; 1 where either is not finite. Asserts that sizes agree.
-double difference(const Image& a, const Image& b);
+/// The same of two pictures, which it leaves where they differ by more: sqrt(sum |got - easy|^2 / sum |easy|^2) over
+/// pixels and channels; 1 where either is not finite. Asserts that sizes agree.
+void expect_picture(const std::string& name, const Image& got, const Image& easy, double tolerance);
 
 /// |mean(a) / mean(b) - 1| of all channels together.
 double mean_difference(const Image& a, const Image& b);

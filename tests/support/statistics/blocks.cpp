@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "support/device/rig.h"
+#include "support/files/evidence.h"
 #include "support/statistics/statistics.h"
 
 namespace vkcppm::test {
@@ -116,6 +117,37 @@ BlockComparison compare(Extent size, const BlockSettings& settings, const BlockM
 }
 
 }  // namespace
+
+namespace {
+
+Image mean_of(const Pictures& pictures) {
+    Image mean{pictures.front().extent, std::vector<glm::vec3>(pictures.front().rgb.size(), glm::vec3(0.0f))};
+    for (const Image& one : pictures) {
+        for (std::size_t i = 0; i < one.rgb.size(); ++i) mean.rgb[i] += one.rgb[i] / float(pictures.size());
+    }
+    return mean;
+}
+
+void expect_agreement(const BlockComparison& blocks, const std::string& ways, const Image& got, const Image& wanted) {
+    if (blocks.differing == 0) return;
+    ADD_FAILURE() << blocks.differing << " blocks differ; " << ways << ", a block and channel:\n" << blocks.table;
+    leave_pictures(got, wanted, ways);
+}
+
+}  // namespace
+
+BlockComparison expect_blocks_agree(const TwoWays& pictures, const BlockSettings& settings) {
+    const BlockComparison blocks = compare_blocks(pictures, settings);
+    expect_agreement(blocks, "photons over paths", mean_of(pictures.photons), mean_of(pictures.paths));
+    return blocks;
+}
+
+BlockComparison expect_blocks_agree(const oracle::PathTracing& picture, const oracle::PathTracing& paths,
+                                    const BlockSettings& settings, const std::string& ways) {
+    const BlockComparison blocks = compare_blocks(picture, paths, settings);
+    expect_agreement(blocks, ways, picture.mean, paths.mean);
+    return blocks;
+}
 
 BlockComparison compare_blocks(const TwoWays& pictures, const BlockSettings& settings) {
     const auto of = [&](const Pictures& ones) {

@@ -47,8 +47,15 @@ struct BlockComparison {
 
 BlockComparison compare_blocks(const TwoWays& pictures, const BlockSettings& settings);
 
+/// Expects that no block differs, or shows the table and leaves the pictures (the means of both ways).
+BlockComparison expect_blocks_agree(const TwoWays& pictures, const BlockSettings& settings);
+
 /// The same of two pictures that know their standard errors, from many samples: by the normal distribution.
 BlockComparison compare_blocks(const oracle::PathTracing& picture, const oracle::PathTracing& paths,
                                const BlockSettings& settings);
+
+/// `ways`: what stands over what, such as "device over double".
+BlockComparison expect_blocks_agree(const oracle::PathTracing& picture, const oracle::PathTracing& paths,
+                                    const BlockSettings& settings, const std::string& ways);
 
 }  // namespace vkcppm::test
