@@ -22,6 +22,8 @@
 #include "support/files/files.h"
 #include "support/files/process.h"
 #include "support/files/temporary_folder.h"
+#include "support/hostile/faults.h"
+#include "support/scenes/everything.h"
 #include "support/scenes/scenes.h"
 
 namespace vkcppm {
@@ -302,31 +304,40 @@ TEST_F(Cli, ASceneIsNeeded) {
 }
 
 struct Hostile {
-    const char* file;  // below hostile/ of the scenes that stand beside the project
+    std::string file;
     int code;
     Words told;  // of the error
+    std::string bytes;
 };
 
+std::string faulty(std::string_view name) {
+    test::GltfBuilder builder = test::one_triangle();
+    std::ranges::find(test::faults(), name, &test::Fault::name)->make(builder);
+    return builder.gltf();
+}
+
 TEST_F(Cli, HostileFilesHaveTheirExitCodeAndTheirLine) {
-    if (!test::shared_file("hostile")) GTEST_SKIP() << "the hostile files are not there";
+    const test::GltfBuilder triangle = test::one_triangle();
+    std::string cut = triangle.glb();
+    cut.resize(cut.size() - 8);
     const std::vector<Hostile> all = {
-        {"assimp/glTF2/MissingBin/BoxTextured.gltf", 65, {"buffers[0]", "BoxTextured0.bin", "no such file"}},
-        {"assimp/glTF2/RecursiveNodes/RecursiveNodes.gltf", 65, {"nodes[0]", "ancestor"}},
-        {"assimp/glTF2/IndexOutOfRange/AllIndicesOutOfRange.gltf", 65, {"accessors", "POSITION"}},
-        {"assimp/glTF2/wrongTypes/badUint.gltf", 65, {"baseColorTexture.index", "-1"}},
-        {"tinygltf/models/BoundsChecking/integer-out-of-bounds.gltf", 65, {"bufferViews[0].byteLength", "1e+300"}},
-        {"glTF-Validator/base/data/glb/chunk_too_big.glb", 65, {"GLB chunk 0"}},
-        {"glTF-Validator/base/data/buffer/non_relative_uri.gltf", 65, {"buffers[0].uri", "http://example.com"}},
-        {"cgltf/TriangleWithoutIndices.gltf", 0, {}},
-        {"tinygltf/models/box01.glb", 0, {}},
-        {"assimp/glTF2/BoxBadNormals-glTF-Binary/BoxBadNormals.glb", 0, {}},
+        {"missing_bin.gltf", 65, {"buffers[0]", "gone.bin", "no such file"}, triangle.gltf_with_uri("gone.bin")},
+        {"other_host.gltf", 65, {"buffers[0].uri", "http://a.b"}, triangle.gltf_with_uri("http://a.b/c.bin")},
+        {"ancestor.gltf", 65, {"nodes[0]", "ancestor"}, faulty("Cycle")},
+        {"index.gltf", 65, {"nodes[0].children[0] is -1"}, faulty("Child")},
+        {"vertex.gltf", 65, {"indices"}, faulty("IndexRange")},
+        {"huge.gltf", 65, {"bufferViews[0].byteOffset is 18446744073709551600"}, faulty("ViewOverflow")},
+        {"type.gltf", 65, {"meshes is 3", "array"}, faulty("WrongTypeOfArray")},
+        {"cut.glb", 65, {"GLB length"}, cut},
+        {"cut.gltf", 65, {"cut.gltf"}, triangle.gltf().substr(0, 100)},
+        {"triangle.gltf", 0, {}, triangle.gltf()},
+        {"everything.glb", 0, {}, test::everything().glb()},
     };
     for (const Hostile& hostile : all) {
         SCOPED_TRACE(hostile.file);
-        const auto file = test::shared_file(std::string("hostile/") + hostile.file);
-        ASSERT_TRUE(file);
+        test::write_bytes(folder_ / hostile.file, hostile.bytes);
         const auto result =
-            run({file->string(), "-o", "out.exr", "--size", "8x6", "--iterations", "2", "--photons", "500", "--quiet"});
+            run({hostile.file, "-o", "out.exr", "--size", "8x6", "--iterations", "2", "--photons", "500", "--quiet"});
         if (hostile.code == 0) {
             expect_done(result);
             EXPECT_FALSE(contains(result.err, "error: ")) << result.err;

@@ -19,7 +19,7 @@ class CornellGlass : public GpuTest, public testing::WithParamInterface<Case> {}
 TEST_P(CornellGlass, SixtyFourIterations) {
     const auto scene = shared_file("cornell_glass.glb");
     const auto reference = shared_file("cornell_glass_ref.exr");
-    if (!scene || !reference) GTEST_SKIP() << "the shared scene cornell_glass.glb and its reference are not there";
+    if (!scene || !reference) GTEST_SKIP() << no_collections;
     Settings settings;
     settings.estimator = GetParam().estimator;
     settings.size = Extent{256, 256};

@@ -41,7 +41,7 @@ Moments block_of(const Image& mean, const Image& standard_error, std::uint32_t b
 TEST(OracleShared, CornellBoxOfRoughMetal) {
     const auto scene = shared_file("cornell-box.glb"), picture = shared_file("cornell-box_ref.exr"),
                error = shared_file("cornell-box_ref_stderr.exr");
-    if (!scene || !picture || !error) GTEST_SKIP() << "cornell-box is not there";
+    if (!scene || !picture || !error) GTEST_SKIP() << no_collections;
     const Image other = read_exr(*picture), other_error = read_exr(*error);
     const auto paths =
         oracle::path_trace(load_gltf(*scene), {.size = {side, side}, .samples = samples, .max_depth = 64});

@@ -11,9 +11,11 @@
 #include "support/files/files.h"
 #include "support/files/places.h"
 #include "support/files/temporary_folder.h"
+#include "support/hostile/faults.h"
 #include "support/hostile/hostile_input.h"
 #include "support/hostile/mutation.h"
 #include "support/scenes/everything.h"
+#include "support/scenes/sample_models.h"
 #include "support/scenes/scenes.h"
 
 namespace vkcppm {
@@ -67,9 +69,33 @@ TEST(Hostile, MutationsOfASceneWithEverything) {
 
 TEST(Hostile, MutationsOfPictures) { expect_no_misbehaviour(files_of(source / "tests/fuzz/pictures"), 100); }
 
+/// One malformed file of each kind, which a change may also make right.
+TEST(Hostile, MutationsOfFaults) {
+    const test::TemporaryFolder folder;
+    std::vector<fs::path> files;
+    for (const test::Fault& fault : test::faults()) {
+        test::GltfBuilder builder = test::one_triangle();
+        fault.make(builder);
+        files.push_back(folder / (std::string(fault.name) + ".gltf"));
+        test::write_bytes(files.back(), builder.gltf());
+    }
+    std::erase_if(files, [](const fs::path& file) { return fs::file_size(file) > 12000; });
+    expect_no_misbehaviour(files, 12);
+}
+
+TEST(Hostile, MutationsOfSampleModels) {
+    const test::TemporaryFolder folder;
+    std::vector<fs::path> files;
+    for (const test::SampleModel& model : test::sample_models()) {
+        files.push_back(folder / (model.name + ".glb"));
+        test::write_bytes(files.back(), model.file.glb());
+    }
+    expect_no_misbehaviour(files, 20);
+}
+
 TEST(Hostile, MutationsOfHostileFiles) {
     const auto folder = test::shared_file("hostile");
-    if (!folder) GTEST_SKIP() << "the hostile files are not there";
+    if (!folder) GTEST_SKIP() << test::no_collections;
     std::vector<fs::path> files = test::gltf_files_in(*folder);
     std::erase_if(files, [](const fs::path& file) { return fs::file_size(file) > 12000; });
     expect_no_misbehaviour(files, 6);

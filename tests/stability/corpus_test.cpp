@@ -1,4 +1,5 @@
-// Sample models that stand beside the project, through the whole pipeline under the validation layer.
+// Sample models through the whole pipeline under the validation layer: those that are made here, one a feature, and the
+// collections that may stand beside the project.
 
 #include <cmath>
 #include <filesystem>
@@ -13,6 +14,8 @@
 #include "scene/gltf/gltf.h"
 #include "support/device/rig.h"
 #include "support/names.h"
+#include "support/scenes/loading.h"
+#include "support/scenes/sample_models.h"
 #include "support/scenes/scenes.h"
 
 namespace vkcppm::test {
@@ -79,7 +82,7 @@ class Corpus : public GpuTest, public testing::WithParamInterface<Part> {};
 TEST_P(Corpus, EveryModelRenders) {
     const Part& part = GetParam();
     const auto folder = shared_file(part.folder);
-    if (!folder) GTEST_SKIP() << "the models are not there";
+    if (!folder) GTEST_SKIP() << no_collections;
     const std::vector<std::filesystem::path> files = gltf_files_in(*folder);
     std::size_t rendered = 0, gathering = 0, refused = 0;
     std::set<std::uint32_t> seen;
@@ -101,6 +104,22 @@ TEST_P(Corpus, EveryModelRenders) {
     EXPECT_GE(rendered, part.rendered);
     EXPECT_GE(gathering, part.gathering) << "models with pixels that gather photons, of " << rendered;
     EXPECT_LE(refused, part.refused);
+}
+
+class Samples : public GpuTest {};
+
+TEST_F(Samples, EveryModelRenders) {
+    std::set<std::uint32_t> seen;
+    std::size_t gathering = 0;
+    for (const SampleModel& model : sample_models()) {
+        SCOPED_TRACE(model.name);
+        Scene scene = load(model.file);
+        scene.environment = sky();
+        if (!seen.insert(bits_of(flatten(scene).features)).second) continue;
+        gathering += expect_sound_picture(scene) > 0 ? 1 : 0;
+    }
+    EXPECT_GE(seen.size(), 12u) << "sets of features";
+    EXPECT_GE(gathering, 8u) << "models with pixels that gather photons, of " << seen.size();
 }
 
 INSTANTIATE_TEST_SUITE_P(

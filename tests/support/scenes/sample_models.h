@@ -1,0 +1,20 @@
+#pragma once
+// Small models, one a feature of glTF that the loader reads or says that it leaves out.
+
+#include <string>
+#include <vector>
+
+#include "support/scenes/gltf_builder.h"
+
+namespace vkcppm::test {
+
+struct SampleModel {
+    std::string name;
+    GltfBuilder file;
+    std::size_t triangles = 0;               // of the scene
+    std::vector<std::string> warnings = {};  // parts of its warnings, one each, but for the one about a missing camera
+};
+
+std::vector<SampleModel> sample_models();
+
+}  // namespace vkcppm::test
