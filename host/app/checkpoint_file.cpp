@@ -250,12 +250,10 @@ std::uint64_t hash_of(const Image& image) { return fnv1a_of(std::span<const glm:
 Identity identity_of(const SceneOptions& options, const Scene& scene, const Settings& settings,
                      const Image* reference) {
     Identity identity = {{"version", version()}, {"kernels", hash_text(kernels_hash())}};
-    nlohmann::ordered_json json = settings_json(settings);
-    for (const char* bound : {"iterations", "time"}) json.erase(bound);
+    nlohmann::ordered_json json = settings_json(settings, setting::is_identity);
     const nlohmann::ordered_json of_scene = scene_json(options, scene);
     json["scene_hash"] = of_scene["hash"];
     json["thin_glass"] = of_scene["thin_glass"];
-    json["aovs"] = settings.aovs;
     if (reference) json["reference_hash"] = hash_text(hash_of(*reference));
     for (const auto& [name, value] : json.items()) {
         identity.emplace_back(name, value.is_string() ? value.get<std::string>() : json_text(value));

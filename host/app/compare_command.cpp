@@ -4,13 +4,14 @@
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/measures.h"
+#include "app/record.h"
 #include "core/metrics.h"
 #include "io/exr.h"
 
 namespace vkcppm {
 namespace {
 
-std::string json_text(const CompareOptions& options, const Comparison& comparison) {
+nlohmann::ordered_json json_of(const CompareOptions& options, const Comparison& comparison) {
     const glm::dvec3& ratio = comparison.mean_ratio;
     nlohmann::ordered_json json;
     json["image"] = options.image.string();
@@ -23,7 +24,7 @@ std::string json_text(const CompareOptions& options, const Comparison& compariso
     json["mean_ratio"] = {ratio.r, ratio.g, ratio.b};
     add_measures(json, comparison);
     json["psnr"] = comparison.psnr;
-    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    return json;
 }
 
 std::string plain_text(const Comparison& comparison) {
@@ -46,7 +47,7 @@ void execute(const CompareOptions& options) {
                         "they are left out",
                         comparison.image_non_finite, comparison.reference_non_finite));
     }
-    print_result(options.json ? json_text(options, comparison) : plain_text(comparison));
+    print_result(options.json ? json_text(json_of(options, comparison), 2) + "\n" : plain_text(comparison));
 }
 
 }  // namespace vkcppm

@@ -5,12 +5,13 @@
 
 #include "app/commands.h"
 #include "app/console.h"
+#include "app/record.h"
 #include "vk/device.h"
 
 namespace vkcppm {
 namespace {
 
-std::string json_text(const std::vector<DeviceInfo>& devices) {
+nlohmann::ordered_json json_of(const std::vector<DeviceInfo>& devices) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const DeviceInfo& device : devices) {
         json.push_back({{"index", device.index},
@@ -23,7 +24,7 @@ std::string json_text(const std::vector<DeviceInfo>& devices) {
                         {"usable", device.unusable.empty()},
                         {"unusable_because", device.unusable}});
     }
-    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    return json;
 }
 
 std::string plain_text(const std::vector<DeviceInfo>& devices) {
@@ -44,7 +45,7 @@ std::string plain_text(const std::vector<DeviceInfo>& devices) {
 
 void execute(const DevicesOptions& options) {
     const std::vector<DeviceInfo> devices = list_devices();
-    print_result(options.json ? json_text(devices) : plain_text(devices));
+    print_result(options.json ? json_text(json_of(devices), 2) + "\n" : plain_text(devices));
 }
 
 }  // namespace vkcppm

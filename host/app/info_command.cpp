@@ -14,6 +14,7 @@
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/load.h"
+#include "app/record.h"
 #include "core/fnv1a.h"
 #include "flat/features.h"
 #include "flat/flatten.h"
@@ -120,7 +121,7 @@ Json json_of(const Environment& environment) {
             {"mean_radiance", json_of(mean_radiance(environment))}};
 }
 
-std::string json_text(const Scene& scene, const std::vector<Feature>& features) {
+Json json_of(const Scene& scene, const std::vector<Feature>& features) {
     Json json;
     json["scene"] = scene.file.string();
     json["hash"] = hash_text(scene.hash);
@@ -158,7 +159,7 @@ std::string json_text(const Scene& scene, const std::vector<Feature>& features) 
         json["features"].push_back({{"name", feature.name}, {"reason", feature.reason}});
     }
     json["warnings"] = scene.warnings;
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json;
 }
 
 std::string plain_text(const Scene& scene, const std::vector<Feature>& features) {
@@ -207,7 +208,7 @@ void execute(const InfoOptions& options) {
     const Scene scene = load_scene(options.scene);
     print_warnings(scene.warnings);
     const std::vector<Feature> features = flatten(scene).features;
-    print_result(options.json ? json_text(scene, features) : plain_text(scene, features));
+    print_result(options.json ? json_text(json_of(scene, features), 2) + "\n" : plain_text(scene, features));
 }
 
 }  // namespace vkcppm

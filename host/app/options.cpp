@@ -1,119 +1,35 @@
 #include "app/options.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <limits>
+#include <cassert>
+#include <initializer_list>
 #include <sstream>
 #include <string_view>
-#include <system_error>
-#include <vector>
+#include <type_traits>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/option_values.h"
 #include "core/error.h"
 #include "render/estimators.h"
+#include "render/settings_rows.h"
 
 namespace vkcppm {
 namespace {
 
+using setting::Kind;
+using setting::Unit;
 using Words = std::vector<std::string>;
 
 constexpr double race_seconds = 60.0;        // of each entrant with each seed, where nothing else bounds them
 constexpr std::uint32_t most_seeds = 10000;  // of a race: more is taken for a slip
+constexpr const char* race_estimators = "cppm,sppm,appm";
 
 constexpr const char* footer = R"(Exit codes:
   0 done   2 usage   65 bad scene   66 no such file   69 no usable Vulkan device   70 internal
   71 out of device memory   73 cannot write   75 device lost)";
-
-[[noreturn]] void refuse(const std::string& option, const std::string& text, const std::string& wanted) {
-    throw Error(ExitCode::usage, fmt::format("{}: '{}' is not {}", option, text, wanted));
-}
-
-/// Reads the number at the start of `text` and removes it; false where there is none or it does not fit.
-template <typename Number> bool take_number(std::string_view& text, Number& number) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc()) return false;
-    text.remove_prefix(std::size_t(end - text.data()));
-    return true;
-}
-
-std::uint32_t parse_whole(const std::string& option, const std::string& text) {
-    std::string_view rest = text;
-    std::uint32_t number = 0;
-    if (!take_number(rest, number) || !rest.empty()) {
-        refuse(option, text, fmt::format("a whole number from 0 to {}", std::numeric_limits<std::uint32_t>::max()));
-    }
-    return number;
-}
-
-double parse_real(const std::string& option, const std::string& text) {
-    std::string_view rest = text;
-    double number = 0.0;
-    if (!take_number(rest, number) || !rest.empty() || !std::isfinite(number)) refuse(option, text, "a finite number");
-    return number;
-}
-
-std::string parse_name(const std::string& option, const std::string& text) {
-    if (text.empty()) {
-        refuse(option, text, "a name");  // an unset variable of a shell must not mean the default
-    }
-    return text;
-}
-
-double parse_exposure(const std::string& option, const std::string& text) {
-    constexpr double most = 128.0;  // stops: any float becomes white or black
-    const double stops = parse_real(option, text);
-    if (std::abs(stops) > most) {
-        refuse(option, text, fmt::format("a number from {} to {}", -most, most));
-    }
-    return stops;
-}
-
-Extent parse_size(const std::string& option, const std::string& text) {
-    std::string_view rest = text;
-    Extent size;
-    const bool width = take_number(rest, size.width) && rest.starts_with('x');
-    if (width) rest.remove_prefix(1);
-    if (!width || !take_number(rest, size.height) || !rest.empty()) {
-        refuse(option, text, "WIDTHxHEIGHT in pixels, such as 512x384");
-    }
-    return size;
-}
-
-ThinGlass parse_thin_glass(const std::string& option, const std::string& text) {
-    if (text != "thin" && text != "solid") refuse(option, text, "thin or solid");
-    return text == "solid" ? ThinGlass::solid : ThinGlass::thin;
-}
-
-/// Seconds of a duration such as 90, 90s, 2m, 1.5h or 500ms.
-double parse_seconds(const std::string& option, const std::string& text) {
-    std::string_view unit = text;
-    double number = 0.0;
-    if (take_number(unit, number)) {
-        const double scale = unit.empty() || unit == "s" ? 1.0
-                             : unit == "ms"              ? 1e-3
-                             : unit == "m"               ? 60.0
-                             : unit == "h"               ? 3600.0
-                                                         : 0.0;
-        const double seconds = number * scale;
-        if (std::isfinite(seconds) && seconds > 0.0) return seconds;
-    }
-    refuse(option, text, "a time greater than 0, such as 90, 90s, 2m, 1.5h or 500ms");
-}
-
-StopAt parse_stop_at(const std::string& option, const std::string& text) {
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos) refuse(option, text, "METRIC=VALUE, such as relmse_trimmed=0.0035");
-    StopAt result{&find_metric(option, text.substr(0, equals))};
-    std::string_view rest = std::string_view(text).substr(equals + 1);
-    if (!take_number(rest, result.value) || !rest.empty() || !std::isfinite(result.value) || !(result.value > 0.0)) {
-        refuse(option, text, "a metric and a finite number greater than 0");
-    }
-    return result;
-}
 
 /// Adds an option whose value `parse` turns into `target`.
 template <typename Target, typename Value>
@@ -125,19 +41,72 @@ CLI::Option* add(CLI::App& app, const std::string& name, const char* type, Targe
         ->type_name(type);
 }
 
-/// Runs `app` over the words; false where they asked for help or the version, which `text` then holds.
-bool parse(CLI::App& app, const Words& words, std::string& text) {
-    try {
-        app.parse(Words(words.rbegin(), words.rend()));  // CLI11 takes them last word first
-        return true;
-    } catch (const CLI::CallForHelp&) {
-        text = app.help();
-    } catch (const CLI::CallForVersion& version) {
-        text = std::string(version.what()) + "\n";
-    } catch (const CLI::ParseError& error) {
-        throw Error(ExitCode::usage, fmt::format("{} (see {} --help)", error.what(), app.get_name()));
+// How a value of a setting is read, by its type; seconds are the one unit that is written with suffixes.
+auto parser_of(std::uint32_t, Unit) { return parse_whole; }
+auto parser_of(double, Unit unit) { return unit == Unit::seconds ? parse_seconds : parse_real; }
+auto parser_of(const std::string&, Unit) { return parse_name; }
+auto parser_of(const Extent&, Unit) { return parse_size; }
+template <typename T> auto parser_of(const std::optional<T>&, Unit unit) { return parser_of(T(), unit); }
+
+const char* type_name(Unit unit) {
+    switch (unit) {
+        case Unit::count: return "N";
+        case Unit::number: return "X";
+        case Unit::metres: return "METRES";
+        case Unit::seconds: return "TIME";
+        case Unit::pixels: return "WxH";
+        case Unit::camera: return "NAME|INDEX";
+        case Unit::name: return "NAME";
+        case Unit::flag: break;
     }
-    return false;
+    return "";
+}
+
+/// The values of a list and what they are; empty where there is no list of names.
+std::vector<std::pair<std::string, std::string>> choices_of(const auto&) { return {}; }
+std::vector<std::pair<std::string, std::string>> choices_of(setting::AnEstimator) {
+    std::vector<std::pair<std::string, std::string>> choices;
+    for (const EstimatorRow& row : estimators()) choices.emplace_back(row.name, row.summary);
+    return choices;
+}
+
+/// The row's help with its default and choices.
+std::string help_of(const auto& row) {
+    std::string choices;
+    for (const auto& [name, summary] : choices_of(row.values)) choices += fmt::format("\n{}: {}", name, summary);
+    const Settings standard;
+    const auto& value = standard.*row.member;
+    if constexpr (fmt::is_formattable<std::remove_cvref_t<decltype(value)>>::value)
+        return fmt::format(fmt::runtime(row.help), value, fmt::arg("choices", choices));
+    return row.help;
+}
+
+void add_setting(CLI::App& app, const auto& row, Settings& settings, const std::string& help) {
+    const std::string option = fmt::format("--{}", row.name);
+    auto& target = settings.*row.member;
+    if constexpr (std::is_same_v<decltype(target), bool&>) {
+        app.add_flag(option, target, help);
+    } else {
+        add(app, option, type_name(row.unit), target, parser_of(target, row.unit), help);
+    }
+}
+
+/// The settings of these kinds.
+void add_settings(CLI::App& app, Settings& settings, std::initializer_list<Kind> kinds) {
+    setting::for_each([&](const auto& row) {
+        if (std::ranges::find(kinds, row.kind) != kinds.end()) add_setting(app, row, settings, help_of(row));
+    });
+}
+
+/// The setting of that name, with the command's own words.
+void add_setting(CLI::App& app, Settings& settings, std::string_view name, const std::string& help) {
+    [[maybe_unused]] bool found = false;
+    setting::for_each([&](const auto& row) {
+        if (row.name != name) return;
+        add_setting(app, row, settings, help);
+        found = true;
+    });
+    assert(found);
 }
 
 void add_scene(CLI::App& app, SceneOptions& scene) {
@@ -149,51 +118,6 @@ void add_scene(CLI::App& app, SceneOptions& scene) {
         "Glass without a volume thickness: thin-walled, or solid where its mesh is closed (default: thin)");
 }
 
-std::string estimator_help() {
-    std::string help = "How photons become radiance:";
-    for (const EstimatorRow& row : estimators()) {
-        help += fmt::format("\n{}: {}", row.name, row.summary);
-    }
-    return help;
-}
-
-/// What every way of making a picture takes, whatever the estimator: photons, film, camera, seed, depth.
-void add_common(CLI::App& app, Settings& settings) {
-    const Settings standard;
-    add(app, "--photons", "N", settings.photons, parse_whole,
-        fmt::format("Light paths emitted an iteration (default: {})", standard.photons));
-    add(app, "--size", "WxH", settings.size, parse_size,
-        "Pixels (default: 512 on the longer side, in the camera's aspect)");
-    add(app, "--camera", "NAME|INDEX", settings.camera, parse_name, "Camera by name or index (default: the first)");
-    add(app, "--aperture", "METRES", settings.aperture, parse_real,
-        "Diameter of the lens; what is not at --focus-distance is blurred (default: 0, all is sharp)");
-    add(app, "--focus-distance", "METRES", settings.focus_distance, parse_real,
-        "From the camera along its axis to what is sharp; goes with --aperture");
-    add(app, "--seed", "N", settings.seed, parse_whole,
-        fmt::format("Same seed, same picture (default: {})", standard.seed));
-    add(app, "--max-depth", "N", settings.max_depth, parse_whole,
-        fmt::format("Bounces of a path (default: {})", standard.max_depth));
-}
-
-/// The parameters of the estimators.
-void add_parameters(CLI::App& app, Settings& settings) {
-    const Settings standard;
-    add(app, "--knn", "N", settings.knn, parse_whole,
-        fmt::format("The starting radius reaches this many photons (default: {})", standard.knn));
-    add(app, "--alpha", "X", settings.alpha, parse_real,
-        fmt::format("sppm, sppm-kz: how slowly the radius shrinks (default: {:.3g})", standard.alpha));
-    add(app, "--k", "X", settings.k, parse_real,
-        fmt::format("cppm, ftest: factor of the area after a rejection (default: {})", standard.k));
-    add(app, "--beta", "X", settings.beta, parse_real,
-        fmt::format("cppm, ftest: growth of the batch after a rejection (default: {})", standard.beta));
-    add(app, "--significance", "X", settings.significance, parse_real,
-        fmt::format("cppm, ftest: level of each test (default: {})", standard.significance));
-    add(app, "--rings", "N", settings.rings, parse_whole,
-        fmt::format("cppm, ftest: rings of the disc (default: {})", standard.rings));
-    add(app, "--sectors", "N", settings.sectors, parse_whole,
-        fmt::format("cppm, ftest: sectors of the disc: 4, 6, 8 or 12 (default: {})", standard.sectors));
-}
-
 void add_device(CLI::App& app, Device::Options& device) {
     add(app, "--device", "NAME|INDEX|uuid:...", device.select, parse_name,
         "Vulkan device; vkcppm devices lists them (default: the fastest)");
@@ -203,87 +127,7 @@ void add_device(CLI::App& app, Device::Options& device) {
         "Neither read nor write compiled kernels in $XDG_CACHE_HOME/vkcppm");
 }
 
-Options parse_render(const Words& words) {
-    const Settings standard;
-    RenderOptions options;
-    std::optional<std::filesystem::path> output;
-    std::optional<std::uint32_t> iterations;
-    std::string text;
-
-    CLI::App app(
-        "Renders a glTF scene by progressive photon mapping on a Vulkan device.\n"
-        "Other commands: vkcppm race, vkcppm reference, vkcppm compare, vkcppm info, vkcppm devices; each has its\n"
-        "own --help.\n"
-        "A scene of such a name is given as ./compare.",
-        "vkcppm");
-    app.footer(footer);
-    app.set_version_flag("--version", "vkcppm " VKCPPM_VERSION);
-    add_scene(app, options.scene);
-    app.add_option("-o", output, "The picture, linear float EXR (default: the scene's name with .exr, here)")
-        ->type_name("OUT.exr");
-    app.add_option("--png", options.png, "The picture for the eye, 8-bit sRGB as well")->type_name("FILE.png");
-    add(app, "--exposure", "EV", options.exposure, parse_exposure, "Stops by which the PNG is brightened (default: 0)")
-        ->needs("--png");
-    app.add_option("--estimator", options.settings.estimator,
-                   estimator_help() + fmt::format("\n(default: {})", standard.estimator))
-        ->type_name("NAME");
-    add(app, "--iterations", "N", iterations, parse_whole,
-        fmt::format("Iterations (default: {}; unbounded with --time)", standard.iterations));
-    add(app, "--time", "TIME", options.settings.seconds, parse_seconds,
-        "Stop after the iteration in which this time has passed: 90, 90s, 2m, 1.5h, 500ms");
-    app.add_option("--reference", options.reference,
-                   "Measure the error against this picture after 1, 2, 4, ... 64, 128, 192, ... iterations, for\n"
-                   "--stats. The clock stands still meanwhile: it runs in the passes of the iterations, not while\n"
-                   "scene and kernels are loaded, errors measured or pictures written")
-        ->type_name("REF.exr");
-    add(app, "--stop-at", "METRIC=VALUE", options.stop_at, parse_stop_at,
-        "Stop after the first iteration after which the error is at most this, such as relmse_trimmed=0.0035;\n"
-        "one of " +
-            metric_names())
-        ->needs("--reference");
-    app.add_option(
-           "--checkpoint", options.checkpoint,
-           "Keep the state of the render in this file, which is replaced whole, and once more at the end; what\n"
-           "was there is lost")
-        ->type_name("FILE");
-    app.add_option(
-           "--resume", options.resume,
-           "Go on from such a file, and keep the state there unless --checkpoint names another. Scene and settings\n"
-           "must be the same, but --iterations and --time, which count from the first start, may be larger")
-        ->type_name("FILE");
-    add(app, "--checkpoint-every", "TIME", options.checkpoint_every, parse_seconds,
-        fmt::format("Rendering time between two states that are kept (default: {:g}s)", options.checkpoint_every));
-    add_common(app, options.settings);
-    add_parameters(app, options.settings);
-    app.add_flag("--aovs", options.settings.aovs,
-                 "Add channels to the EXR: ppm.radius, ppm.photons, ppm.batch, ppm.rejections, ppm.statistic,\n"
-                 "ppm.iterations, and Z, Albedo, N of the first surfaces");
-    add_device(app, options.device);
-    app.add_option("--stats", options.stats, "Times and counts of the render")->type_name("FILE.json");
-    app.add_flag(
-        "--hash", options.hash,
-        "Print a hash of what each pass of each iteration wrote, and of the picture, to find where two renders\n"
-        "part; slower");
-    app.add_flag("--quiet", options.quiet, "No progress, only warnings and errors");
-    app.add_flag("--verbose", options.verbose, "Times of the passes at the end");
-
-    if (!parse(app, words, text)) {
-        return TextOptions{text};
-    }
-    options.output = output ? *output : std::filesystem::path(options.scene.file.stem().string() + ".exr");
-    if (!options.checkpoint) options.checkpoint = options.resume;
-    if (!options.checkpoint && app.count("--checkpoint-every") > 0) {
-        throw Error(ExitCode::usage, "--checkpoint-every needs --checkpoint or --resume");
-    }
-    if (iterations) {
-        options.settings.iterations = *iterations;
-    } else if (options.settings.seconds) {
-        options.settings.iterations = unbounded_iterations;
-    }
-    return options;
-}
-
-/// NAME or NAME:PARAMETER=VALUE:..., the parameters of add_parameters; the rest as in `common`.
+/// NAME or NAME:PARAMETER=VALUE:...; the rest as in `common`.
 Entrant parse_entrant(const std::string& text, const Settings& common) {
     std::vector<std::string> parts;
     std::istringstream stream(text);
@@ -291,7 +135,7 @@ Entrant parse_entrant(const std::string& text, const Settings& common) {
     Entrant entrant{text, common};
     entrant.settings.estimator = find_estimator(parts.empty() ? "" : parts.front()).name;
     CLI::App app("", "--estimators");
-    add_parameters(app, entrant.settings);
+    add_settings(app, entrant.settings, {Kind::parameter});
     app.set_help_flag();
     Words names, words;
     for (const CLI::Option* option : app.get_options()) names.push_back(option->get_name().substr(2));
@@ -322,33 +166,81 @@ std::string quoted(const std::string& word) {
     return text + "'";
 }
 
-Options parse_race(const Words& words) {
-    RaceOptions options;
-    Settings settings;
-    std::string estimators = "cppm,sppm,appm";
-    std::optional<std::uint32_t> iterations;
-    std::string text;
+// A command is two functions of its options: declare() says what can be given and where it goes, finish() does, once
+// the words are read, what several of them decide together.
 
-    CLI::App app(
-        "Renders a scene by several estimators side by side and compares their errors: against iterations,\n"
-        "against time, at every pixel. Open DIR/index.html in a browser.",
-        "vkcppm race");
+void declare(CLI::App& app, RenderOptions& options) {
+    app.footer(footer);
+    app.set_version_flag("--version", "vkcppm " VKCPPM_VERSION);
+    add_scene(app, options.scene);
+    app.add_option("-o", options.output, "The picture, linear float EXR (default: the scene's name with .exr, here)")
+        ->type_name("OUT.exr");
+    app.add_option("--png", options.png, "The picture for the eye, 8-bit sRGB as well")->type_name("FILE.png");
+    add(app, "--exposure", "EV", options.exposure, parse_exposure, "Stops by which the PNG is brightened (default: 0)")
+        ->needs("--png");
+    add_settings(app, options.settings, {Kind::method, Kind::bound});
+    app.add_option("--reference", options.reference,
+                   "Measure the error against this picture after 1, 2, 4, ... 64, 128, 192, ... iterations, for\n"
+                   "--stats. The clock stands still meanwhile: it runs in the passes of the iterations, not while\n"
+                   "scene and kernels are loaded, errors measured or pictures written")
+        ->type_name("REF.exr");
+    add(app, "--stop-at", "METRIC=VALUE", options.stop_at, parse_stop_at,
+        "Stop after the first iteration after which the error is at most this, such as relmse_trimmed=0.0035;\n"
+        "one of " +
+            metric_names())
+        ->needs("--reference");
+    app.add_option(
+           "--checkpoint", options.checkpoint,
+           "Keep the state of the render in this file, which is replaced whole, and once more at the end; what\n"
+           "was there is lost")
+        ->type_name("FILE");
+    app.add_option(
+           "--resume", options.resume,
+           "Go on from such a file, and keep the state there unless --checkpoint names another. Scene and settings\n"
+           "must be the same, but --iterations and --time, which count from the first start, may be larger")
+        ->type_name("FILE");
+    add(app, "--checkpoint-every", "TIME", options.checkpoint_every, parse_seconds,
+        fmt::format("Rendering time between two states that are kept (default: {:g}s)", options.checkpoint_every));
+    add_settings(app, options.settings, {Kind::picture, Kind::view});
+    add_settings(app, options.settings, {Kind::parameter});
+    add_settings(app, options.settings, {Kind::channels});
+    add_device(app, options.device);
+    app.add_option("--stats", options.stats, "Times and counts of the render")->type_name("FILE.json");
+    app.add_flag(
+        "--hash", options.hash,
+        "Print a hash of what each pass of each iteration wrote, and of the picture, to find where two renders\n"
+        "part; slower");
+    app.add_flag("--quiet", options.quiet, "No progress, only warnings and errors");
+    app.add_flag("--verbose", options.verbose, "Times of the passes at the end");
+}
+
+void finish(const CLI::App& app, const Words&, RenderOptions& options) {
+    if (app.count("-o") == 0) options.output = options.scene.file.stem().string() + ".exr";
+    if (!options.checkpoint) options.checkpoint = options.resume;
+    if (!options.checkpoint && app.count("--checkpoint-every") > 0)
+        throw Error(ExitCode::usage, "--checkpoint-every needs --checkpoint or --resume");
+    if (app.count("--iterations") == 0 && options.settings.seconds) options.settings.iterations = unbounded_iterations;
+}
+
+void declare(CLI::App& app, RaceOptions& options) {
     app.footer(footer);
     add_scene(app, options.scene);
     app.add_option("-o", options.folder, "Folder for the page, curves and pictures; made where there is none")
         ->required()
         ->type_name("DIR");
-    app.add_option("--estimators", estimators,
-                   fmt::format("Who takes part, parameters behind a colon: cppm,cppm:beta=1.5:k=0.7,sppm\n"
-                               "(default: {}). The same seed means the same photon paths for all, and the same\n"
-                               "starting radii unless they differ in knn",
-                               estimators))
+    app.add_option("--estimators")
+        ->description(fmt::format("Who takes part, parameters behind a colon: cppm,cppm:beta=1.5:k=0.7,sppm\n"
+                                  "(default: {}). The same seed means the same photon paths for all, and the same\n"
+                                  "starting radii unless they differ in knn",
+                                  race_estimators))
         ->type_name("NAME[:PARAMETER=VALUE]...,...");
-    add(app, "--time", "TIME", settings.seconds, parse_seconds,
+    // What all entrants have in common; finish() makes them of it.
+    Settings& settings = options.race.entrants.emplace_back().settings;
+    add_setting(
+        app, settings, "time",
         fmt::format("What each gets for each seed, on a clock that runs during its passes alone (default: {:g}s)",
                     race_seconds));
-    add(app, "--iterations", "N", iterations, parse_whole,
-        "What each gets for each seed; with --time, what comes first");
+    add_setting(app, settings, "iterations", "What each gets for each seed; with --time, what comes first");
     add(app, "--seeds", "N", options.race.seeds, parse_whole,
         "Repeat with so many seeds, from --seed on: two or more give confidence intervals (default: 1)");
     app.add_option("--reference", options.reference,
@@ -360,112 +252,163 @@ Options parse_race(const Words& words) {
         ->excludes("--reference");
     add(app, "--exposure", "EV", options.exposure, parse_exposure,
         "Stops by which pictures are brightened (default: 0)");
-    add_common(app, settings);
-    add_parameters(app, settings);
+    add_settings(app, settings, {Kind::picture, Kind::view});
+    add_settings(app, settings, {Kind::parameter});
     add_device(app, options.device);
     app.add_flag("--quiet", options.quiet, "No progress, only warnings and errors");
-    if (!parse(app, words, text)) {
-        return TextOptions{text};
-    }
-    if (options.race.seeds == 0 || options.race.seeds > most_seeds) {
-        refuse("--seeds", std::to_string(options.race.seeds), fmt::format("a number from 1 to {}", most_seeds));
-    }
-    if (!iterations && !settings.seconds) settings.seconds = race_seconds;
-    settings.iterations = iterations.value_or(unbounded_iterations);
-    std::istringstream stream(estimators + ",");
-    for (std::string entrant; std::getline(stream, entrant, ',');) {
-        options.race.entrants.push_back(parse_entrant(entrant, settings));
-    }
-    options.command = "vkcppm race";
-    for (const std::string& word : words) options.command += " " + quoted(word);
-    return options;
 }
 
-Options parse_reference(const Words& words) {
-    ReferenceOptions options;
+void finish(const CLI::App& app, const Words& words, RaceOptions& options) {
+    if (options.race.seeds == 0 || options.race.seeds > most_seeds)
+        refuse("--seeds", std::to_string(options.race.seeds), fmt::format("a number from 1 to {}", most_seeds));
+    Settings settings = options.race.entrants.front().settings;
+    if (app.count("--iterations") == 0) {
+        settings.iterations = unbounded_iterations;
+        if (!settings.seconds) settings.seconds = race_seconds;
+    }
+    options.race.entrants.clear();
+    const CLI::Option* estimators = app.get_option("--estimators");
+    std::istringstream stream((estimators->count() > 0 ? estimators->as<std::string>() : race_estimators) + ",");
+    for (std::string entrant; std::getline(stream, entrant, ',');)
+        options.race.entrants.push_back(parse_entrant(entrant, settings));
+    options.command = "vkcppm race";
+    for (const std::string& word : words) options.command += " " + quoted(word);
+}
+
+void declare(CLI::App& app, ReferenceOptions& options) {
     ReferenceSettings& settings = options.settings;
-    std::optional<std::uint32_t> samples, iterations;
-    std::string text;
-    CLI::App app(
-        "Makes a picture to measure others against, with its standard error a pixel: paths where they converge,\n"
-        "photons for caustics. A scene of the name of a command is given as ./compare.",
-        "vkcppm reference");
     add_scene(app, options.scene);
     app.add_option("-o", options.output, "The picture: linear EXR of R G B, StdErr and Trust")
         ->type_name("REF.exr")
         ->required();
     app.add_flag("--half", options.half, "16-bit floats: a small file");
-    add(app, "--time", "TIME", settings.render.seconds, parse_seconds,
-        "Stop when this time has passed: 90, 90s, 2m, 1.5h, 500ms");
-    add(app, "--samples", "N", samples, parse_whole,
+    add_setting(app, settings.render, "time", "Stop when this time has passed: 90, 90s, 2m, 1.5h, 500ms");
+    add(app, "--samples", "N", settings.samples, parse_whole,
         fmt::format("Paths a pixel, at most (default: {}; unbounded with --time)", settings.samples));
-    add(app, "--iterations", "N", iterations, parse_whole,
-        fmt::format("Iterations of caustics, at most (default: {}; unbounded with --time)",
-                    settings.render.iterations));
+    add_setting(app, settings.render, "iterations",
+                fmt::format("Iterations of caustics, at most (default: {}; unbounded with --time)",
+                            settings.render.iterations));
     add(app, "--trust", "X", settings.trust, parse_real,
         fmt::format("Largest relative standard error of a pixel that is trusted (default: {})", settings.trust));
-    add_common(app, settings.render);
+    add_settings(app, settings.render, {Kind::picture, Kind::view});
     add_device(app, options.device);
     app.add_option("--stats", options.stats, "Times and counts")->type_name("FILE.json");
     app.add_flag("--quiet", options.quiet, "No progress, only the summary");
     app.add_flag("--json", options.json, "Print the summary as JSON");
-    if (!parse(app, words, text)) {
-        return TextOptions{text};
-    }
-    const bool timed = settings.render.seconds.has_value();
-    settings.samples = samples.value_or(timed ? unbounded_samples : settings.samples);
-    settings.render.iterations = iterations.value_or(timed ? unbounded_iterations : settings.render.iterations);
-    return options;
 }
 
-Options parse_compare(const Words& words) {
-    CompareOptions options;
-    std::string text;
-    CLI::App app("Compares a picture with its reference.", "vkcppm compare");
+void finish(const CLI::App& app, const Words&, ReferenceOptions& options) {
+    ReferenceSettings& settings = options.settings;
+    if (!settings.render.seconds) return;
+    if (app.count("--samples") == 0) settings.samples = unbounded_samples;
+    if (app.count("--iterations") == 0) settings.render.iterations = unbounded_iterations;
+}
+
+void declare(CLI::App& app, CompareOptions& options) {
     app.add_option("IMAGE", options.image, "EXR file")->required()->type_name("");
     app.add_option("REFERENCE", options.reference, "EXR file of the same size")->required()->type_name("");
     app.add_flag("--json", options.json, "Print JSON");
-    if (!parse(app, words, text)) {
-        return TextOptions{text};
-    }
-    return options;
 }
 
-Options parse_info(const Words& words) {
-    InfoOptions options;
-    std::string text;
-    CLI::App app("Lists what is in a scene and how it will be treated.", "vkcppm info");
+void declare(CLI::App& app, InfoOptions& options) {
     add_scene(app, options.scene);
     app.add_flag("--json", options.json, "Print JSON");
-    if (!parse(app, words, text)) {
-        return TextOptions{text};
+}
+
+void declare(CLI::App& app, DevicesOptions& options) { app.add_flag("--json", options.json, "Print JSON"); }
+
+template <typename T> void finish(const CLI::App&, const Words&, T&) {}
+
+/// A row of the table of commands.
+struct Command {
+    std::string_view name;  // its word; empty: vkcppm SCENE
+    const char* about;
+    Options (*read)(const Command& command, const Words& words);  // those after its name
+    CommandText (*describe)(const Command& command);
+
+    std::string full_name() const { return name.empty() ? "vkcppm" : fmt::format("vkcppm {}", name); }
+};
+
+template <typename T> Options read(const Command& command, const Words& words) {
+    T options;
+    CLI::App app(command.about, command.full_name());
+    declare(app, options);
+    try {
+        app.parse(Words(words.rbegin(), words.rend()));  // CLI11 takes them last word first
+    } catch (const CLI::CallForHelp&) {
+        return TextOptions{app.help()};
+    } catch (const CLI::CallForVersion& version) {
+        return TextOptions{std::string(version.what()) + "\n"};
+    } catch (const CLI::ParseError& error) {
+        throw Error(ExitCode::usage, fmt::format("{} (see {} --help)", error.what(), app.get_name()));
     }
+    finish(app, words, options);
     return options;
 }
 
-Options parse_devices(const Words& words) {
-    DevicesOptions options;
-    std::string text;
-    CLI::App app("Lists the Vulkan devices.", "vkcppm devices");
-    app.add_flag("--json", options.json, "Print JSON");
-    if (!parse(app, words, text)) {
-        return TextOptions{text};
+template <typename T> CommandText describe(const Command& command) {
+    T options;
+    CLI::App app(command.about, command.full_name());
+    declare(app, options);
+    CommandText text{std::string(command.name), command.about, app.get_footer(), {}};
+    for (const CLI::Option* option : app.get_options()) {
+        OptionText& told = text.options.emplace_back();
+        told.positional = option->get_positional();
+        if (told.positional) told.names.push_back(option->get_name());
+        for (const std::string& name : option->get_snames()) told.names.push_back("-" + name);
+        for (const std::string& name : option->get_lnames()) told.names.push_back("--" + name);
+        told.value = option->get_items_expected_max() > 0 ? option->get_type_name() : "";
+        told.help = option->get_description();
+        setting::for_each([&](const auto& row) {
+            if (told.names.front() != fmt::format("--{}", row.name)) return;
+            for (const auto& [name, summary] : choices_of(row.values)) told.choices.push_back(name);
+        });
     }
-    return options;
+    return text;
 }
+
+template <typename T> constexpr Command command(std::string_view name, const char* about) {
+    return {name, about, read<T>, describe<T>};
+}
+
+/// The first is that of all words which no other begins with.
+constexpr std::array commands{
+    command<RenderOptions>(
+        "",
+        "Renders a glTF scene by progressive photon mapping on a Vulkan device.\n"
+        "Other commands: vkcppm race, vkcppm reference, vkcppm compare, vkcppm info, vkcppm devices; each has its\n"
+        "own --help.\n"
+        "A scene of such a name is given as ./compare."),
+    command<RaceOptions>(
+        "race",
+        "Renders a scene by several estimators side by side and compares their errors: against iterations,\n"
+        "against time, at every pixel. Open DIR/index.html in a browser."),
+    command<ReferenceOptions>(
+        "reference",
+        "Makes a picture to measure others against, with its standard error a pixel: paths where they converge,\n"
+        "photons for caustics. A scene of the name of a command is given as ./compare."),
+    command<CompareOptions>("compare", "Compares a picture with its reference."),
+    command<InfoOptions>("info", "Lists what is in a scene and how it will be treated."),
+    command<DevicesOptions>("devices", "Lists the Vulkan devices."),
+};
 
 }  // namespace
 
 Options parse_options(int argc, const char* const* argv) {
-    const Words words(argv + std::min(argc, 1), argv + argc);
-    const std::string command = words.empty() ? "" : words.front();
-    const auto arguments = [&] { return Words(words.begin() + 1, words.end()); };
-    if (command == "race") return parse_race(arguments());
-    if (command == "reference") return parse_reference(arguments());
-    if (command == "compare") return parse_compare(arguments());
-    if (command == "info") return parse_info(arguments());
-    if (command == "devices") return parse_devices(arguments());
-    return parse_render(words);
+    Words words(argv + std::min(argc, 1), argv + argc);
+    const auto first = commands.begin();
+    const auto named = words.empty() ? commands.end()
+                                     : std::find_if(first + 1, commands.end(),
+                                                    [&](const Command& row) { return row.name == words.front(); });
+    if (named == commands.end()) return first->read(*first, words);
+    words.erase(words.begin());
+    return named->read(*named, words);
+}
+
+std::vector<CommandText> command_texts() {
+    std::vector<CommandText> texts;
+    for (const Command& command : commands) texts.push_back(command.describe(command));
+    return texts;
 }
 
 }  // namespace vkcppm

@@ -110,4 +110,24 @@ inline constexpr std::uint32_t unbounded_samples = 1u << 24;  // of ReferenceSet
 /// takes.
 Options parse_options(int argc, const char* const* argv);
 
+/// What --help says of an option, in parts.
+struct OptionText {
+    std::vector<std::string> names;    // with their dashes; of what is given by its place: as in the help
+    bool positional = false;           // given by its place
+    std::string value;                 // what stands for its value; empty: it takes none
+    std::string help;                  // lines
+    std::vector<std::string> choices;  // names that its value is one of; empty: not a list
+};
+
+/// What --help says of a command.
+struct CommandText {
+    std::string name;  // empty: vkcppm SCENE
+    std::string about;
+    std::string footer;
+    std::vector<OptionText> options;
+};
+
+/// All commands, vkcppm SCENE first.
+std::vector<CommandText> command_texts();
+
 }  // namespace vkcppm

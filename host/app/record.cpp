@@ -1,5 +1,6 @@
 #include "app/record.h"
 
+#include <algorithm>
 #include <cassert>
 #include <iterator>
 #include <utility>
@@ -17,6 +18,9 @@ using Json = nlohmann::ordered_json;
 
 const char* name_of(ThinGlass thin_glass) { return thin_glass == ThinGlass::solid ? "solid" : "thin"; }
 
+Json json_of(const auto& value) { return value; }
+Json json_of(const Extent& size) { return fmt::format("{}x{}", size.width, size.height); }
+
 }  // namespace
 
 std::string version() { return VKCPPM_VERSION; }
@@ -25,27 +29,18 @@ std::string json_text(const Json& json, int indent) {
     return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-Json settings_json(const Settings& settings) {
+std::string json_name(std::string_view option) {
+    std::string name(option);
+    std::ranges::replace(name, '-', '_');
+    return name;
+}
+
+Json settings_json(const Settings& settings, const std::function<bool(setting::Kind)>& wanted) {
     Json json;
-    json["estimator"] = settings.estimator;
-    json["iterations"] = settings.iterations;
-    if (settings.seconds) json["time"] = *settings.seconds;
-    json["photons"] = settings.photons;
-    if (settings.size) {
-        json["size"] = fmt::format("{}x{}", settings.size->width, settings.size->height);
-    }
-    json["camera"] = settings.camera;
-    json["aperture"] = settings.aperture;
-    if (settings.focus_distance) json["focus_distance"] = *settings.focus_distance;
-    json["seed"] = settings.seed;
-    json["max_depth"] = settings.max_depth;
-    json["knn"] = settings.knn;
-    json["alpha"] = settings.alpha;
-    json["k"] = settings.k;
-    json["beta"] = settings.beta;
-    json["significance"] = settings.significance;
-    json["rings"] = settings.rings;
-    json["sectors"] = settings.sectors;
+    setting::for_each([&](const auto& row) {
+        const auto* value = setting::given(settings.*row.member);
+        if (value && wanted(row.kind)) json[json_name(row.name)] = json_of(*value);
+    });
     return json;
 }
 

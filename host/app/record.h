@@ -1,19 +1,26 @@
 #pragma once
 // What a render was, as text: enough to make its picture again, and what it took.
 
+#include <functional>
 #include <string>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
 
 #include "app/options.h"
 #include "io/exr.h"
 #include "render/render.h"
+#include "render/settings_rows.h"
 #include "scene/scene.h"
 
 namespace vkcppm {
 
-/// All settings, by the names of the command line's options with '_' for '-'.
-nlohmann::ordered_json settings_json(const Settings& settings);
+/// The name of a member of settings_json: that of the command line's option, with '_' for '-'.
+std::string json_name(std::string_view option);
+
+/// The settings of the kinds that are `wanted`, by default all; those that are absent are left out.
+nlohmann::ordered_json settings_json(
+    const Settings& settings, const std::function<bool(setting::Kind)>& wanted = [](setting::Kind) { return true; });
 
 /// The scene's file and hash, its triangles, and what was done to it.
 nlohmann::ordered_json scene_json(const SceneOptions& options, const Scene& scene);

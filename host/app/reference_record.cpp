@@ -15,12 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json reference_settings_json(const ReferenceSettings& settings) {
-    const Json render = settings_json(settings.render);
-    Json json;
-    for (const char* name :
-         {"time", "photons", "iterations", "size", "camera", "aperture", "focus_distance", "seed", "max_depth"}) {
-        if (render.contains(name)) json[name] = render[name];
-    }
+    Json json = settings_json(settings.render, setting::is_of_reference);
     json["samples"] = settings.samples;
     json["trust"] = settings.trust;
     return json;

@@ -9,28 +9,40 @@
 
 #include "core/error.h"
 #include "render/estimators.h"
+#include "render/settings_rows.h"
 #include "shared/types.h"
 
 namespace vkcppm {
 namespace {
 
 constexpr std::uint32_t default_longer_side = 512;
-constexpr std::uint32_t max_side = 65536;
-constexpr std::size_t max_pixels = std::size_t(1) << 27;
-constexpr double longest = 1e9;  // m, of a lens; one over it is the shortest
 
-template <typename T> void check_range(const char* option, T value, T low, T high) {
-    if (!(value >= low && value <= high)) {
-        throw Error(ExitCode::usage, fmt::format("{} {} is outside {}..{}", option, value, low, high));
+// Each throws Error(usage) where a row does not take the value.
+template <typename T> void check(const std::string&, const T&, setting::Any) {}
+template <typename T> void check(const std::string& option, T value, setting::Within<T> range) {
+    if (!(value >= range.low && value <= range.high))
+        throw Error(ExitCode::usage, fmt::format("{} {} is outside {}..{}", option, value, range.low, range.high));
+}
+void check(const std::string& option, double value, setting::Between range) {
+    if (!(float(value) > float(range.low) && float(value) < float(range.high))) {
+        throw Error(ExitCode::usage,
+                    fmt::format("{} {} is not between {} and {}", option, value, range.low, range.high));
     }
 }
-
-/// The kernels take the value as a float, which must not be an end of the range either.
-void check_open(const char* option, double value, double low, double high) {
-    if (!(float(value) > float(low) && float(value) < float(high))) {
-        throw Error(ExitCode::usage, fmt::format("{} {} is not between {} and {}", option, value, low, high));
+template <typename T, std::size_t N> void check(const std::string& option, T value, const setting::OneOf<T, N>& list) {
+    if (std::ranges::find(list.values, value) == list.values.end()) {
+        throw Error(ExitCode::usage, fmt::format("{} {} is none of {}", option, value, fmt::join(list.values, ", ")));
     }
 }
+void check(const std::string& option, const Extent& size, setting::Pixels limit) {
+    check(option + ": width", size.width, setting::within(1u, limit.side));
+    check(option + ": height", size.height, setting::within(1u, limit.side));
+    if (size.pixels() > limit.pixels) {
+        throw Error(ExitCode::usage, fmt::format("{}: {}x{} are {} pixels; the limit is {}", option, size.width,
+                                                 size.height, size.pixels(), limit.pixels));
+    }
+}
+void check(const std::string&, const std::string& name, setting::AnEstimator) { find_estimator(name); }
 
 /// Index of the camera that `wanted` names: by name, else by index; empty is the first.
 std::size_t find_camera(const std::string& wanted, const Scene& scene) {
@@ -58,54 +70,37 @@ Extent default_size(const Camera& camera) {
 
 /// A lens has an opening and a distance at which it is sharp, or neither.
 void check_lens(double aperture, const std::optional<double>& focus_distance) {
-    check_range("--aperture", aperture, 0.0, longest);
-    if (focus_distance) check_range("--focus-distance", *focus_distance, 1.0 / longest, longest);
-    if (aperture > 0.0 && !focus_distance) {
+    if (aperture > 0.0 && !focus_distance)
         throw Error(ExitCode::usage, fmt::format("--aperture {} needs --focus-distance", aperture));
-    }
     if (focus_distance && aperture == 0.0) {
         throw Error(ExitCode::usage,
                     fmt::format("--focus-distance {} needs --aperture greater than 0", *focus_distance));
     }
 }
 
+/// A test of a disc in cells needs a degree of freedom in its innermost ring.
+void check_cells(const EstimatorRow& estimator, std::uint32_t sectors) {
+    static_assert(MAX_SECTORS == 12);
+    if (estimator.statistic == Statistic::tally && cells(estimator, 1, sectors) < 2 + estimator.fitted) {
+        throw Error(ExitCode::usage,
+                    fmt::format("--sectors {} leave the test of {} no degree of freedom", sectors, estimator.name));
+    }
+}
+
 }  // namespace
 
 Settings resolve_settings(const Settings& settings, const Scene& scene) {
-    Settings resolved = settings;
-    const EstimatorRow& estimator = find_estimator(settings.estimator);
-    check_range<std::uint32_t>("--iterations", settings.iterations, 1, max_iterations);
-    if (settings.seconds) check_open("--time", *settings.seconds, 0.0, 1e9);
-    check_range<std::uint32_t>("--photons", settings.photons, 1, 1u << 24);
+    setting::for_each([&](const auto& row) {
+        if (const auto* value = setting::given(settings.*row.member))
+            check(fmt::format("--{}", row.name), *value, row.values);
+    });
     check_lens(settings.aperture, settings.focus_distance);
-    check_range<std::uint32_t>("--max-depth", settings.max_depth, 1, 1024);
-    check_range<std::uint32_t>("--knn", settings.knn, 2, 256);
-    check_open("--alpha", settings.alpha, 0.0, 1.0);
-    check_open("--k", settings.k, 0.0, 1.0);
-    if (!(settings.beta >= 1.0 && settings.beta <= 1000.0)) {
-        throw Error(ExitCode::usage, fmt::format("--beta {} is outside 1..1000", settings.beta));
-    }
-    check_open("--significance", settings.significance, 0.0, 1.0);
-    check_range<std::uint32_t>("--rings", settings.rings, 1, MAX_RINGS);
-    if (settings.sectors != 4 && settings.sectors != 6 && settings.sectors != 8 && settings.sectors != 12) {
-        throw Error(ExitCode::usage, fmt::format("--sectors {} is none of 4, 6, 8, 12", settings.sectors));
-    }
-    static_assert(MAX_SECTORS == 12);
-    if (estimator.statistic == Statistic::tally && cells(estimator, 1, settings.sectors) < 2 + estimator.fitted) {
-        throw Error(ExitCode::usage, fmt::format("--sectors {} leave the test of {} no degree of freedom",
-                                                 settings.sectors, estimator.name));
-    }
-    resolved.estimator = std::string(estimator.name);
+    check_cells(find_estimator(settings.estimator), settings.sectors);
 
+    Settings resolved = settings;
     const std::size_t camera = find_camera(settings.camera, scene);
     resolved.camera = std::to_string(camera);
     if (!settings.size) resolved.size = default_size(scene.cameras.at(camera));
-    check_range<std::uint32_t>("--size: width", resolved.size->width, 1, max_side);
-    check_range<std::uint32_t>("--size: height", resolved.size->height, 1, max_side);
-    if (resolved.size->pixels() > max_pixels) {
-        throw Error(ExitCode::usage, fmt::format("--size: {}x{} are {} pixels; the limit is {}", resolved.size->width,
-                                                 resolved.size->height, resolved.size->pixels(), max_pixels));
-    }
     return resolved;
 }
 

@@ -48,14 +48,18 @@ fs::path find_reference(const RaceOptions& options) {
 
 /// A line for every attribute of a reference of this program that says that it shows something else than the race.
 std::vector<std::string> mismatches(const RaceInput& input, const ExrAttributes& wanted) {
+    std::vector<std::string> seen{"scene_hash", "thin_glass"};
+    setting::for_each([&](const auto& row) {
+        if (row.kind == setting::Kind::view) seen.push_back(json_name(row.name));
+    });
     std::vector<std::string> lines;
     for (const auto& [name, value] : input.reference_attributes) {
-        for (const char* seen : {"scene_hash", "thin_glass", "camera", "aperture", "focus_distance"}) {
-            if (name != std::string("vkcppm.") + seen) continue;
+        for (const std::string& what : seen) {
+            if (name != "vkcppm." + what) continue;
             for (const auto& [same, other] : wanted) {
                 if (same == name && other != value) {
                     lines.push_back(
-                        fmt::format("{} has {} {}, the race {}", input.reference.string(), seen, value, other));
+                        fmt::format("{} has {} {}, the race {}", input.reference.string(), what, value, other));
                 }
             }
         }

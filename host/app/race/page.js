@@ -208,7 +208,7 @@ function drawSettings() {
     );
   });
   const settings = entrants[0].settings;
-  const own = ['estimator', 'knn', 'alpha', 'k', 'beta', 'significance', 'rings', 'sectors'];
+  const own = ['estimator', ...race.parameters];
   const common = Object.entries(settings).filter(([name]) => ![...own, 'iterations', 'time', 'seed'].includes(name));
   const lines = [
     ['scene', race.scene.file],

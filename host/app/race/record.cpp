@@ -117,6 +117,10 @@ Json race_json(const RaceOptions& options, const RaceInput& input, const RaceRes
     json["difference_scale"] = json_of(pictures.difference);
     json["radius_scale"] = json_of(pictures.radius);
     json["winner_reach"] = winner_reach;
+    json["parameters"] = Json::array();
+    setting::for_each([&](const auto& row) {
+        if (row.kind == setting::Kind::parameter) json["parameters"].push_back(json_name(row.name));
+    });
     json["metrics"] = Json::array();
     for (const Metric& metric : metrics()) {
         json["metrics"].push_back({{"name", metric.name}, {"title", metric.title}});

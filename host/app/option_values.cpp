@@ -1,0 +1,105 @@
+#include "app/option_values.h"
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <string_view>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace vkcppm {
+namespace {
+
+/// Reads the number at the start of `text` and removes it; false where there is none or it does not fit.
+template <typename Number> bool take_number(std::string_view& text, Number& number) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc()) return false;
+    text.remove_prefix(std::size_t(end - text.data()));
+    return true;
+}
+
+}  // namespace
+
+void refuse(const std::string& option, const std::string& text, const std::string& wanted) {
+    throw Error(ExitCode::usage, fmt::format("{}: '{}' is not {}", option, text, wanted));
+}
+
+std::uint32_t parse_whole(const std::string& option, const std::string& text) {
+    std::string_view rest = text;
+    std::uint32_t number = 0;
+    if (!take_number(rest, number) || !rest.empty()) {
+        refuse(option, text, fmt::format("a whole number from 0 to {}", std::numeric_limits<std::uint32_t>::max()));
+    }
+    return number;
+}
+
+double parse_real(const std::string& option, const std::string& text) {
+    std::string_view rest = text;
+    double number = 0.0;
+    if (!take_number(rest, number) || !rest.empty() || !std::isfinite(number)) refuse(option, text, "a finite number");
+    return number;
+}
+
+std::string parse_name(const std::string& option, const std::string& text) {
+    if (text.empty()) {
+        refuse(option, text, "a name");  // an unset variable of a shell must not mean the default
+    }
+    return text;
+}
+
+double parse_exposure(const std::string& option, const std::string& text) {
+    constexpr double most = 128.0;  // stops: any float becomes white or black
+    const double stops = parse_real(option, text);
+    if (std::abs(stops) > most) {
+        refuse(option, text, fmt::format("a number from {} to {}", -most, most));
+    }
+    return stops;
+}
+
+Extent parse_size(const std::string& option, const std::string& text) {
+    std::string_view rest = text;
+    Extent size;
+    const bool width = take_number(rest, size.width) && rest.starts_with('x');
+    if (width) rest.remove_prefix(1);
+    if (!width || !take_number(rest, size.height) || !rest.empty()) {
+        refuse(option, text, "WIDTHxHEIGHT in pixels, such as 512x384");
+    }
+    return size;
+}
+
+ThinGlass parse_thin_glass(const std::string& option, const std::string& text) {
+    if (text != "thin" && text != "solid") refuse(option, text, "thin or solid");
+    return text == "solid" ? ThinGlass::solid : ThinGlass::thin;
+}
+
+/// Seconds of a duration such as 90, 90s, 2m, 1.5h or 500ms.
+double parse_seconds(const std::string& option, const std::string& text) {
+    std::string_view unit = text;
+    double number = 0.0;
+    if (take_number(unit, number)) {
+        const double scale = unit.empty() || unit == "s" ? 1.0
+                             : unit == "ms"              ? 1e-3
+                             : unit == "m"               ? 60.0
+                             : unit == "h"               ? 3600.0
+                                                         : 0.0;
+        const double seconds = number * scale;
+        if (std::isfinite(seconds) && seconds > 0.0) return seconds;
+    }
+    refuse(option, text, "a time greater than 0, such as 90, 90s, 2m, 1.5h or 500ms");
+}
+
+StopAt parse_stop_at(const std::string& option, const std::string& text) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos) refuse(option, text, "METRIC=VALUE, such as relmse_trimmed=0.0035");
+    StopAt result{&find_metric(option, text.substr(0, equals))};
+    std::string_view rest = std::string_view(text).substr(equals + 1);
+    if (!take_number(rest, result.value) || !rest.empty() || !std::isfinite(result.value) || !(result.value > 0.0)) {
+        refuse(option, text, "a metric and a finite number greater than 0");
+    }
+    return result;
+}
+
+}  // namespace vkcppm

@@ -1,0 +1,25 @@
+#pragma once
+// Values of the command line's options: read from a word, or refused with the option, the word and what it takes.
+
+#include <cstdint>
+#include <string>
+
+#include "app/options.h"
+#include "core/image.h"
+
+namespace vkcppm {
+
+/// Throws Error(usage): that of `option` is not `wanted`.
+[[noreturn]] void refuse(const std::string& option, const std::string& text, const std::string& wanted);
+
+// Each throws like refuse() where the word is none.
+std::uint32_t parse_whole(const std::string& option, const std::string& text);
+double parse_real(const std::string& option, const std::string& text);
+std::string parse_name(const std::string& option, const std::string& text);      // not empty
+double parse_exposure(const std::string& option, const std::string& text);       // stops
+Extent parse_size(const std::string& option, const std::string& text);           // 512x384
+double parse_seconds(const std::string& option, const std::string& text);        // of 90, 90s, 2m, 1.5h or 500ms; > 0
+StopAt parse_stop_at(const std::string& option, const std::string& text);        // relmse_trimmed=0.0035
+ThinGlass parse_thin_glass(const std::string& option, const std::string& text);  // thin or solid
+
+}  // namespace vkcppm
