@@ -1,6 +1,5 @@
 #include "render/estimators.h"
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -10,33 +9,8 @@
 #include <fmt/ranges.h>
 
 #include "core/error.h"
-#include "shared/estimators.h"
 
 namespace vkcppm {
-namespace {
-
-constexpr std::array rows = {
-    EstimatorRow{"cppm", ESTIMATOR_CPPM, Statistic::tally, false, 0,
-                 "chi-squared test of a uniform density (Lin et al. 2020)"},
-    EstimatorRow{"sppm", ESTIMATOR_SPPM, Statistic::none, false, 0, "shared statistics (Hachisuka and Jensen 2009)"},
-    EstimatorRow{"sppm-kz", ESTIMATOR_SPPM_KZ, Statistic::none, false, 0,
-                 "one schedule for all pixels (Knaus and Zwicker 2011)"},
-    EstimatorRow{"appm", ESTIMATOR_APPM, Statistic::derivative, false, 0,
-                 "balance of variance and bias (Kaplanyan and Dachsbacher 2013)"},
-    EstimatorRow{"cppm-lf", ESTIMATOR_CPPM_LF, Statistic::tally, false, 2,
-                 "chi-squared test of a linear density (Lin et al. 2020, supplementary)"},
-    EstimatorRow{"cppm-gof", ESTIMATOR_CPPM_GOF, Statistic::tally, false, 0,
-                 "chi-squared test of a generalised odd density (the same)"},
-    EstimatorRow{"cppm-fold", ESTIMATOR_CPPM_FOLD, Statistic::tally, true, 0,
-                 "the hypothesis of cppm-gof by folding, without random flips"},
-    EstimatorRow{"cppm-null", ESTIMATOR_CPPM_NULL, Statistic::none, false, 0,
-                 "shrinks with every batch, without a test: the ablation"},
-    EstimatorRow{"ftest", ESTIMATOR_FTEST, Statistic::contribution, false, 0,
-                 "analysis of variance of contributions (after Lin et al. 2025)"},
-    EstimatorRow{"ftest-fold", ESTIMATOR_FTEST_FOLD, Statistic::contribution, true, 0, "the same on folded sectors"},
-};
-
-}  // namespace
 
 std::uint32_t cells(const EstimatorRow& row, std::uint32_t rings, std::uint32_t sectors) {
     return rings * (row.folded ? sectors / 2 : sectors);
@@ -71,23 +45,42 @@ std::vector<float> f_thresholds(const EstimatorRow& row, std::uint32_t rings, st
     return thresholds;
 }
 
+namespace {
+
+/// Rows of the tally and of the moments.
+struct Kept {
+    std::uint32_t tally = 0;
+    std::uint32_t moments = 0;
+};
+
+Kept kept(const EstimatorRow& row, std::uint32_t rings, std::uint32_t sectors) {
+    const std::uint32_t disc_cells = cells(row, rings, sectors);
+    Kept kept;
+    // clang-format off
+#define IN_TALLY(rows) kept.tally = rows;
+#define IN_MOMENTS(rows) kept.moments = rows;
+#define CASE(name) case Statistic::name: { KEEPS_##name(IN_TALLY, IN_MOMENTS, disc_cells, rings) break; }
+    switch (row.statistic) { STATISTICS(CASE) }
+#undef CASE
+#undef IN_MOMENTS
+#undef IN_TALLY
+    // clang-format on
+    return kept;
+}
+
+}  // namespace
+
 std::uint32_t tally_rows(const EstimatorRow& row, std::uint32_t rings, std::uint32_t sectors) {
-    return row.statistic == Statistic::tally ? cells(row, rings, sectors) : 0;
+    return kept(row, rings, sectors).tally;
 }
 
 std::uint32_t moment_rows(const EstimatorRow& row, std::uint32_t rings, std::uint32_t sectors) {
-    switch (row.statistic) {
-        case Statistic::derivative: return APPM_MOMENTS;
-        case Statistic::contribution: return 3 * cells(row, rings, sectors) + 2 * rings;
-        default: return 0;
-    }
+    return kept(row, rings, sectors).moments;
 }
-
-std::span<const EstimatorRow> estimators() { return rows; }
 
 const EstimatorRow& find_estimator(std::string_view name) {
     std::vector<std::string_view> names;
-    for (const EstimatorRow& row : rows) {
+    for (const EstimatorRow& row : estimator_rows) {
         if (row.name == name) return row;
         names.push_back(row.name);
     }

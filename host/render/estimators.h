@@ -1,29 +1,38 @@
 #pragma once
-// The family: one row an estimator. The kernels switch on `id` (a specialization constant), nothing else does.
+// The family of estimators: the rows of shaders/shared/estimators.h, and how their tests are calibrated.
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "shared/estimators.h"
+
 namespace vkcppm {
 
-/// What an estimator keeps of a pixel besides PixelState, and how its test is calibrated.
-enum class Statistic {
-    none,          // a schedule: no test
-    tally,         // photons a cell; chi-squared with cells - 1 - fitted degrees of freedom
-    derivative,    // APPM_MOMENTS moments
-    contribution,  // sums, means and squares of contributions a cell; F(cells - 1, cells (m - 1)) after m samples
-};
+/// What an estimator keeps of a pixel besides PixelState.
+// clang-format off
+#define ENUMERATOR(name) name,
+enum class Statistic { STATISTICS(ENUMERATOR) };
+#undef ENUMERATOR
+// clang-format on
 
 struct EstimatorRow {
     std::string_view name;  // as --estimator takes it
-    std::uint32_t id;       // ESTIMATOR_* of shaders/shared/estimators.h
     Statistic statistic;
     bool folded;               // opposite sectors are one cell
     std::uint32_t fitted;      // parameters of the density that are fitted before a chi-squared test
     std::string_view summary;  // one line for --help and the README
 };
+
+/// All of them, the default one first.
+// clang-format off
+#define ESTIMATOR_ROW(name, statistic, folded, fitted, summary) \
+    EstimatorRow{name, Statistic::statistic, folded, fitted, summary},
+inline constexpr std::array estimator_rows = {ESTIMATORS(ESTIMATOR_ROW)};
+#undef ESTIMATOR_ROW
+// clang-format on
 
 /// Cells of the disc of the first `rings` rings of n_s = `sectors` sectors.
 std::uint32_t cells(const EstimatorRow& row, std::uint32_t rings, std::uint32_t sectors);
@@ -41,8 +50,7 @@ std::vector<float> f_thresholds(const EstimatorRow& row, std::uint32_t rings, st
 std::uint32_t tally_rows(const EstimatorRow& row, std::uint32_t rings, std::uint32_t sectors);
 std::uint32_t moment_rows(const EstimatorRow& row, std::uint32_t rings, std::uint32_t sectors);
 
-/// All estimators, the default one first.
-std::span<const EstimatorRow> estimators();
+inline std::span<const EstimatorRow> estimators() { return estimator_rows; }
 
 /// The row of that name. Throws Error(usage) that lists the names.
 const EstimatorRow& find_estimator(std::string_view name);

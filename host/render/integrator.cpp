@@ -58,7 +58,6 @@ Integrator::Integrator(const SceneOnDevice& on_device, const Camera& camera, con
     const std::uint32_t features = bits_of(scene.features) | bits_of(features_of(settings));
     scale_ = scene.frame.scale;
     pixels_ = settings.size->pixels();
-    for (const Pass pass : {Pass::eye, Pass::photon, Pass::knn, Pass::gather}) rounds_[pass] = 1;
     params_ = scene_params(device_, scene, camera, settings, settings.caustics.has_value());
     set_test(params_, estimator, settings);
     set_params(scene, settings, forms.front().group);
@@ -84,19 +83,18 @@ Integrator::Integrator(const SceneOnDevice& on_device, const Camera& camera, con
     pixel.batch = float(settings.knn);  // B_1 = k_NN
     buffer(Binding::pixels).upload(std::vector<gpu::PixelState>(pixels_, pixel));
     specialization_ = scene_specialization(scene, features);
-    specialization_.merge(Specialization{{SPEC_ESTIMATOR, estimator.id},
-                                         {SPEC_RINGS, settings.rings},
+    specialization_.merge(Specialization{{SPEC_RINGS, settings.rings},
                                          {SPEC_SECTORS, settings.sectors},
                                          {SPEC_DIGIT_BITS, digit_bits_},
                                          {SPEC_LEVELS, params_.grid_levels}});
-    std::vector<std::string> names;
-    for (const KernelModule& module : kernel_modules()) {
-        if (module.name == "path") continue;  // the path tracer's
-        names.emplace_back(module.name);
-        choices_.emplace(names.back(), forms_of(names.back(), forms));
-        passes_.push_back({names.back(), 0, 0.0});
+    estimator_ = estimator.name;
+    std::vector<KernelId> all;
+    for (const KernelRow& row : kernel_rows()) {
+        if (row.pass == Pass::trace) continue;
+        all.push_back(row.id);
+        kernels_.emplace(row.id, Compiled{KernelChoice(forms_of(row, forms)), {}, {std::string(row.name)}});
     }
-    compile(names);
+    compile(all);
 }
 
 /// Photons, starting radii, the estimator's parameters and the grid's sizes. group: invocations of a work group.
@@ -180,21 +178,21 @@ void Integrator::limit_levels(std::uint32_t levels) {
 
 /// Some drivers compile a kernel when it first runs. Each runs once for an iteration that is not due, which leaves all
 /// as it is, so that no time of compiling is on the clock.
-void Integrator::compile(const std::vector<std::string>& names) {
-    for (const std::string& name : names) {
-        std::vector<Kernel> kernels;
-        for (const KernelForm& form : choices_.at(name).forms()) {
+void Integrator::compile(const std::vector<KernelId>& ids) {
+    for (const KernelId id : ids) {
+        Compiled& kernel = kernels_.at(id);
+        kernel.forms.clear();
+        for (const KernelForm& form : kernel.choice.forms()) {
             Specialization specialization = specialization_;
             specialization[SPEC_WORKGROUP] = form.group;
             specialization[SPEC_WAITS] = form.waits;
-            kernels.emplace_back(device_, bindings_, name, kernel_module(name).spirv, specialization);
+            kernel.forms.emplace_back(device_, bindings_, kernel.report.name, words_of(id, estimator_), specialization);
         }
-        kernels_.insert_or_assign(name, std::move(kernels));
     }
     commands_.begin();
     const gpu::Launch not_due{.iteration = ~0u, .round = 0, .last_round = 0, .offset = 0, .count = 0};
-    for (const std::string& name : names) {
-        for (const Kernel& kernel : kernels_.at(name)) commands_.launch(kernel, 1, not_due);
+    for (const KernelId id : ids) {
+        for (const Kernel& form : kernels_.at(id).forms) commands_.launch(form, 1, not_due);
     }
     commands_.finish();
 }
@@ -204,99 +202,100 @@ void Integrator::add_levels(std::uint32_t levels) {
     params_.grid_levels = levels;
     allocate_sorted();
     specialization_[SPEC_LEVELS] = levels;
-    compile({"knn", "gather"});
+    compile({KernelId::knn, KernelId::gather});
 }
 
 // The algorithm box: every line is one pass over its buffers, each after the one before it.
 void Integrator::iterate(std::uint32_t i, Pass from, Pass to, std::uint32_t first_round) {
     const auto runs = [&](Pass pass) { return from <= pass && pass <= to; };
     const auto round = [&](Pass pass) { return from == pass ? first_round : 0; };
-    if (runs(Pass::eye)) launch_rounds("eye", pixels_, Pass::eye, i, round(Pass::eye));
-    if (runs(Pass::photon)) launch_rounds("photon", params_.photon_lanes, Pass::photon, i, round(Pass::photon));
+    if (runs(Pass::eye)) launch_rounds(KernelId::eye, pixels_, i, round(Pass::eye));
+    if (runs(Pass::photon)) launch_rounds(KernelId::photon, params_.photon_lanes, i, round(Pass::photon));
     if (runs(Pass::grid)) build_grid(i);
-    if (runs(Pass::knn)) launch_rounds("knn", std::nullopt, Pass::knn, i, round(Pass::knn));
-    if (runs(Pass::gather)) launch_rounds("gather", pixels_, Pass::gather, i, round(Pass::gather));
+    if (runs(Pass::knn)) launch_rounds(KernelId::knn, std::nullopt, i, round(Pass::knn));
+    if (runs(Pass::gather)) launch_rounds(KernelId::gather, pixels_, i, round(Pass::gather));
     if (!runs(Pass::update)) return;
-    launch("update", pixels_,
+    launch(KernelId::update, pixels_,
            {.iteration = i, .round = 0, .last_round = 1, .offset = plans_grid(i + 1) ? 1u : 0u, .count = 0});
-    launch("advance", 1, {.iteration = i, .round = 0, .last_round = 1, .offset = 0, .count = 0});
+    launch(KernelId::advance, 1, {.iteration = i, .round = 0, .last_round = 1, .offset = 0, .count = 0});
 }
 
 void Integrator::build_grid(std::uint32_t i) {
     const gpu::Launch plain{.iteration = i, .round = 0, .last_round = 1, .offset = 0, .count = 0};
     const std::uint32_t paths_at = params_.cells + 1;
-    if (plans_grid(i)) launch("grid_plan", 1, plain);
+    if (plans_grid(i)) launch(KernelId::grid_plan, 1, plain);
     scan(i, paths_at, params_.photons + 1);  // photons before each path, and in all
-    launch("grid_clear", stride_invocations, plain);
+    launch(KernelId::grid_clear, stride_invocations, plain);
     for (std::uint32_t level = 0; level < params_.grid_levels; ++level) {
         gpu::Launch push = plain;
         push.count = level;
-        launch("grid_key", params_.photon_lanes, push);
+        launch(KernelId::grid_key, params_.photon_lanes, push);
     }
     const std::uint32_t radix_at = paths_at + 2 * params_.photons + 1;
     for (std::uint32_t digit = 0; digit < digits_; ++digit) {
         gpu::Launch push = plain;
         push.offset = digit * digit_bits_;
         push.count = digit % 2;
-        launch("radix_count", params_.sort_lanes, push);
+        launch(KernelId::radix_count, params_.sort_lanes, push);
         scan(i, radix_at, params_.sort_lanes << digit_bits_);
-        launch("radix_scatter", params_.sort_lanes, push);
+        launch(KernelId::radix_scatter, params_.sort_lanes, push);
     }
-    launch("grid_order", stride_invocations, plain);
+    launch(KernelId::grid_order, stride_invocations, plain);
     scan(i, 0, params_.cells + 1);  // photons before each cell
 }
 
 /// Exclusive scan of counters[offset .. offset + count).
 void Integrator::scan(std::uint32_t i, std::uint32_t offset, std::uint32_t count) {
     const gpu::Launch push{.iteration = i, .round = 0, .last_round = 1, .offset = offset, .count = count};
-    launch("scan_sums", params_.scan_blocks, push);
-    launch("scan_blocks", 1, push);
-    launch("scan_apply", params_.scan_blocks, push);
+    launch(KernelId::scan_sums, params_.scan_blocks, push);
+    launch(KernelId::scan_blocks, 1, push);
+    launch(KernelId::scan_apply, params_.scan_blocks, push);
 }
 
-void Integrator::launch(const std::string& kernel, std::uint64_t invocations, const gpu::Launch& push) {
-    commands_.launch(kernels_.at(kernel)[choices_.at(kernel).index(push.iteration)], invocations, push);
+void Integrator::launch(KernelId id, std::uint64_t invocations, const gpu::Launch& push) {
+    const Compiled& kernel = kernels_.at(id);
+    commands_.launch(kernel.forms[kernel.choice.index(push.iteration)], invocations, push);
+    launched_.push_back(id);
 }
 
-/// As many rounds as the pass has needed so far; the last one blocks what follows where work is left. invocations: none
+/// As many rounds as it has needed so far; the last one blocks what follows where work is left. invocations: none
 /// for those that the device has counted.
-void Integrator::launch_rounds(const std::string& kernel, std::optional<std::uint64_t> invocations, Pass pass,
-                               std::uint32_t i, std::uint32_t first_round) {
-    for (std::uint32_t r = 0; r < rounds_.at(pass); ++r) {
-        const std::uint32_t last = r + 1 == rounds_.at(pass) ? 1 : 0;
+void Integrator::launch_rounds(KernelId id, std::optional<std::uint64_t> invocations, std::uint32_t i,
+                               std::uint32_t first_round) {
+    const Compiled& kernel = kernels_.at(id);
+    for (std::uint32_t r = 0; r < kernel.rounds; ++r) {
+        const std::uint32_t last = r + 1 == kernel.rounds ? 1 : 0;
         const gpu::Launch push{.iteration = i, .round = first_round + r, .last_round = last, .offset = 0, .count = 0};
         if (invocations) {
-            launch(kernel, *invocations, push);
+            launch(id, *invocations, push);
         } else {
-            commands_.launch_indirect(kernels_.at(kernel).front(), buffer(Binding::status),
+            commands_.launch_indirect(kernel.forms.front(), buffer(Binding::status),
                                       offsetof(gpu::Status, search_groups), push);
+            launched_.push_back(id);
         }
     }
 }
 
 /// Submits, waits, and books the times by kernel.
 void Integrator::finish() {
-    for (const Timing& timing : commands_.finish()) {
-        const auto pass = std::find_if(passes_.begin(), passes_.end(),
-                                       [&](const PassReport& p) { return p.name == timing.kernel->name(); });
-        ++pass->calls;
-        pass->device_seconds += timing.seconds;
+    const std::vector<Timing> timings = commands_.finish();  // in the order of the launches
+    for (std::size_t i = 0; i < timings.size(); ++i) {
+        PassReport& report = kernels_.at(launched_[i]).report;
+        ++report.calls;
+        report.device_seconds += timings[i].seconds;
     }
-}
-
-double Integrator::seconds_of(const std::string& kernel) const {
-    return std::ranges::find(passes_, kernel, &PassReport::name)->device_seconds;
+    launched_.clear();
 }
 
 /// Iterations one by one until every kernel's form is chosen, or up to `target`.
 void Integrator::choose_kernels(std::uint32_t target) {
-    const auto undecided = [](const auto& choice) { return !choice.second.decided(); };
-    while (completed_ < target && std::ranges::any_of(choices_, undecided)) {
+    const auto undecided = [](const auto& kernel) { return !kernel.second.choice.decided(); };
+    while (completed_ < target && std::ranges::any_of(kernels_, undecided)) {
         const std::uint32_t iteration = completed_;
-        std::map<std::string, double> before;
-        for (const auto& [name, choice] : choices_) before[name] = seconds_of(name);
+        std::map<KernelId, double> before;
+        for (const auto& [id, kernel] : kernels_) before[id] = kernel.report.device_seconds;
         if (!run_to(iteration + 1)) continue;
-        for (auto& [name, choice] : choices_) choice.book(iteration, seconds_of(name) - before[name]);
+        for (auto& [id, kernel] : kernels_) kernel.choice.book(iteration, kernel.report.device_seconds - before[id]);
     }
 }
 
@@ -327,14 +326,12 @@ bool Integrator::run_to(std::uint32_t target) {
 std::vector<Integrator::PassHash> Integrator::run_hashed() {
     const std::uint32_t iteration = completed_;
     std::vector<PassHash> hashes;
-    for (const auto& [pass, name] :
-         {std::pair(Pass::eye, "eye"), std::pair(Pass::photon, "photon"), std::pair(Pass::grid, "grid"),
-          std::pair(Pass::knn, "knn"), std::pair(Pass::gather, "gather"), std::pair(Pass::update, "update")}) {
+    for (const Pass pass : {Pass::eye, Pass::photon, Pass::grid, Pass::knn, Pass::gather, Pass::update}) {
         commands_.begin();
         iterate(iteration, pass, pass, 0);
         finish();
         unblock(pass);
-        hashes.push_back({name, hash_of(pass)});
+        hashes.push_back({std::string(name_of(pass)), hash_of(pass)});
     }
     return hashes;
 }
@@ -360,31 +357,33 @@ bool Integrator::unblock(Pass to) {
         if (blocked == 0) return was_blocked;
         was_blocked = true;
 
-        Pass from = Pass::gather;
-        std::uint32_t first_round = blocked & PASS_LEVELS ? 0 : 1;
-        if (blocked & PASS_EYE) from = Pass::eye;
-        else if (blocked & (PASS_PHOTON | PASS_CAPACITY)) from = Pass::photon;
-        else if (blocked & PASS_LEVELS) from = Pass::grid;
-        else if (blocked & PASS_KNN) from = Pass::knn;
+        const auto cut =
+            std::ranges::find_if(kernel_rows(), [&](const KernelRow& row) { return (row.unfinished & blocked) != 0; });
+        const bool out_of_steps = cut != kernel_rows().end();
+        Pass from = out_of_steps ? cut->pass : Pass::update;
+        std::uint32_t first_round = 1;
         if (blocked & PASS_CAPACITY) {
             params_.photon_capacity = std::max(params_.photon_capacity, status.capacity) * 5 / 4;
             allocate_photons();
+            from = Pass::photon;
             first_round = 0;  // the paths start again and are the same
         }
         if (blocked & PASS_LEVELS) {
+            from = Pass::grid;
+            first_round = 0;
             const std::uint32_t levels = levels_that_fit(status.levels);
             if (levels < status.levels) limit_levels(levels);  // the grid is planned again
             add_levels(levels);
         }
         commands_.begin();
         iterate(completed_, from, to, first_round);
-        if (!(blocked & (PASS_CAPACITY | PASS_LEVELS)) || (blocked & PASS_PHOTON)) rounds_[from] *= 2;
+        if (out_of_steps) kernels_.at(cut->id).rounds *= 2;
         finish();
     }
 }
 
 Image Integrator::resolve() {
-    run_kernel("resolve", pixels_, {});
+    run_kernel(KernelId::resolve, pixels_, {});
     Image image;
     image.extent = {params_.width, params_.height};
     image.rgb = buffer(Binding::image).download<glm::vec3>(pixels_);
@@ -431,7 +430,7 @@ void Integrator::set_params(const gpu::Params& params) {
     buffer(Binding::params).upload_value(params_);
 }
 
-void Integrator::run_kernel(const std::string& kernel, std::uint64_t invocations, const gpu::Launch& push) {
+void Integrator::run_kernel(KernelId kernel, std::uint64_t invocations, const gpu::Launch& push) {
     commands_.begin();
     launch(kernel, invocations, push);
     finish();
@@ -457,19 +456,20 @@ void Integrator::run_from_grid() {
 
 double Integrator::seconds() const {
     double sum = 0.0;
-    for (const PassReport& pass : passes_) {
-        if (pass.name != "resolve") sum += pass.device_seconds;
+    for (const auto& [id, kernel] : kernels_) {
+        if (row_of(id).pass != Pass::picture) sum += kernel.report.device_seconds;
     }
     return sum;
 }
 
 void Integrator::fill(Report& report) const {
-    report.passes = passes_;
-    for (PassReport& pass : report.passes) {
-        const KernelChoice& choice = choices_.at(pass.name);
+    report.passes.clear();
+    for (const auto& [id, kernel] : kernels_) {
+        if (kernel.report.calls == 0) continue;
+        PassReport& pass = report.passes.emplace_back(kernel.report);
+        const KernelChoice& choice = kernel.choice;
         if (choice.forms().size() > 1) pass.form = choice.decided() ? text_of(*choice.chosen()) : "being measured";
     }
-    std::erase_if(report.passes, [](const PassReport& pass) { return pass.calls == 0; });
     report.iterations = completed_;
     report.emitted_paths = std::uint64_t(completed_) * params_.photons;
     report.stored_photons = stored_;

@@ -8,11 +8,13 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/image.h"
 #include "render/buffers.h"
 #include "render/kernel_choice.h"
+#include "render/kernels.h"
 #include "render/report.h"
 #include "render/scene_on_device.h"
 #include "render/settings.h"
@@ -73,18 +75,23 @@ public:
     std::uint64_t invalid() const { return invalid_; }
 
     /// For tests, which drive single kernels on states of their own: a buffer, the parameters (uploaded by set_params),
-    /// one launch of a kernel by its name.
+    /// one launch of a kernel.
     Buffer& buffer(Binding binding) { return buffers_.at(binding); }
     const gpu::Params& params() const { return params_; }
     void set_params(const gpu::Params& params);
-    void run_kernel(const std::string& kernel, std::uint64_t invocations, const gpu::Launch& push);
+    void run_kernel(KernelId kernel, std::uint64_t invocations, const gpu::Launch& push);
 
     /// For tests, which bring hits and photons of their own: one iteration from the grid on.
     void run_from_grid();
 
 private:
-    /// Passes of an iteration, in order. The first four can run out of steps and go on in another round.
-    enum class Pass { eye, photon, grid, knn, gather, update };
+    /// A kernel in its forms, and what it has cost.
+    struct Compiled {
+        KernelChoice choice;
+        std::vector<Kernel> forms;  // those of `choice`
+        PassReport report;
+        std::uint32_t rounds = 1;  // that it has needed so far
+    };
 
     void set_params(const FlatScene& scene, const Settings& settings, std::uint32_t group);
     Counts counts() const;
@@ -93,17 +100,16 @@ private:
     std::uint32_t levels_that_fit(std::uint32_t wanted) const;
     void limit_levels(std::uint32_t levels);
     void add_levels(std::uint32_t levels);
-    void compile(const std::vector<std::string>& names);
+    void compile(const std::vector<KernelId>& ids);
     void iterate(std::uint32_t iteration, Pass from, Pass to, std::uint32_t first_round);
-    void launch(const std::string& kernel, std::uint64_t invocations, const gpu::Launch& push);
-    void launch_rounds(const std::string& kernel, std::optional<std::uint64_t> invocations, Pass pass,
-                       std::uint32_t iteration, std::uint32_t first_round);
+    void launch(KernelId id, std::uint64_t invocations, const gpu::Launch& push);
+    void launch_rounds(KernelId id, std::optional<std::uint64_t> invocations, std::uint32_t iteration,
+                       std::uint32_t first_round);
     void build_grid(std::uint32_t iteration);
     void scan(std::uint32_t iteration, std::uint32_t offset, std::uint32_t count);
     void finish();
     bool run_to(std::uint32_t target);
     void choose_kernels(std::uint32_t target);
-    double seconds_of(const std::string& kernel) const;
     bool unblock(Pass to);
     std::uint64_t hash_of(Pass pass) const;
 
@@ -114,11 +120,10 @@ private:
     Buffers buffers_;
     Counts counts_;  // of what the photons' slots and levels do not change
     Specialization specialization_;
-    std::map<std::string, std::vector<Kernel>> kernels_;  // a kernel's forms
-    std::map<std::string, KernelChoice> choices_;
-    std::map<Pass, std::uint32_t> rounds_;
-    std::vector<PassReport> passes_;
-    double scale_ = 1.0;  // frame units a metre
+    std::string_view estimator_;
+    std::map<KernelId, Compiled> kernels_;
+    std::vector<KernelId> launched_;  // since the last submission, in order
+    double scale_ = 1.0;              // frame units a metre
     std::uint64_t pixels_ = 0;
     std::uint32_t digit_bits_ = 7;
     std::uint32_t digits_ = 3;  // radix passes

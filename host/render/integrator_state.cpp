@@ -86,9 +86,9 @@ void Integrator::restore(const Report& report, std::span<const std::byte> state)
     rays_ = report.rays;
     stored_ = report.stored_photons;
     invalid_ = report.invalid;
-    for (PassReport& pass : passes_) {
+    for (auto& [id, kernel] : kernels_) {
         for (const PassReport& then : report.passes) {
-            if (pass.name == then.name) pass = then;
+            if (kernel.report.name == then.name) kernel.report = then;
         }
     }
 }
@@ -151,7 +151,9 @@ std::uint64_t Integrator::hash_of(Pass pass) const {
         }
         case Pass::update: hasher.add(planned(buffers_.at(Binding::status).download_value<gpu::Status>())); break;
         case Pass::knn:
-        case Pass::gather: break;
+        case Pass::gather:
+        case Pass::picture:
+        case Pass::trace: break;
     }
     return hasher.hash();
 }

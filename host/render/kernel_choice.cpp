@@ -16,14 +16,13 @@ std::vector<KernelForm> forms_for(const DeviceInfo& device) {
     return {{workgroup, false}, {workgroup, true}, {32, false}, {128, false}};
 }
 
-std::vector<KernelForm> forms_of(const std::string& kernel, const std::vector<KernelForm>& forms) {
-    if (kernel == "photon") return forms;
-    if (kernel != "eye" && kernel != "gather") return {{forms.front().group, false}};
+std::vector<KernelForm> forms_of(const KernelRow& kernel, const std::vector<KernelForm>& forms) {
     std::vector<KernelForm> own;
     for (const KernelForm& form : forms) {
-        const KernelForm plain{form.group, false};
-        if (std::ranges::find(own, plain) == own.end()) own.push_back(plain);
+        const KernelForm worth{form.group, form.waits && kernel.forms == Forms::groups_and_waits};
+        if (std::ranges::find(own, worth) == own.end()) own.push_back(worth);
     }
+    if (kernel.forms == Forms::one) own.resize(1);
     return own;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "render/kernels.h"
 #include "vk/device.h"
 
 namespace vkcppm {
@@ -30,8 +31,8 @@ std::string text_of(const KernelForm& form);
 /// all.
 std::vector<KernelForm> forms_for(const DeviceInfo& device);
 
-/// Those of `forms` that make a difference to a kernel: one for kernels that hardly count.
-std::vector<KernelForm> forms_of(const std::string& kernel, const std::vector<KernelForm>& forms);
+/// Those of `forms` that are worth it for a kernel of that row, each once.
+std::vector<KernelForm> forms_of(const KernelRow& kernel, const std::vector<KernelForm>& forms);
 
 /// Finds the fastest form of one kernel while it does its work: forms take turns from iteration to iteration until each
 /// has run `rounds` times, and the one with the shortest run is kept.

@@ -1,100 +1,81 @@
 #include "render/kernels.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 
 #include "core/fnv1a.h"
+#include "render/estimators.h"
 
 namespace vkcppm {
 namespace {
 
-constexpr std::uint32_t eye_words[] = {
-#include "eye.spv.inc"
-};
-constexpr std::uint32_t photon_words[] = {
-#include "photon.spv.inc"
-};
-constexpr std::uint32_t grid_plan_words[] = {
-#include "grid_plan.spv.inc"
-};
-constexpr std::uint32_t grid_clear_words[] = {
-#include "grid_clear.spv.inc"
-};
-constexpr std::uint32_t grid_key_words[] = {
-#include "grid_key.spv.inc"
-};
-constexpr std::uint32_t grid_order_words[] = {
-#include "grid_order.spv.inc"
-};
-constexpr std::uint32_t scan_sums_words[] = {
-#include "scan_sums.spv.inc"
-};
-constexpr std::uint32_t scan_blocks_words[] = {
-#include "scan_blocks.spv.inc"
-};
-constexpr std::uint32_t scan_apply_words[] = {
-#include "scan_apply.spv.inc"
-};
-constexpr std::uint32_t radix_count_words[] = {
-#include "radix_count.spv.inc"
-};
-constexpr std::uint32_t radix_scatter_words[] = {
-#include "radix_scatter.spv.inc"
-};
-constexpr std::uint32_t knn_words[] = {
-#include "knn.spv.inc"
-};
-constexpr std::uint32_t gather_words[] = {
-#include "gather.spv.inc"
-};
-constexpr std::uint32_t update_words[] = {
-#include "update.spv.inc"
-};
-constexpr std::uint32_t advance_words[] = {
-#include "advance.spv.inc"
-};
-constexpr std::uint32_t resolve_words[] = {
-#include "resolve.spv.inc"
-};
-constexpr std::uint32_t path_words[] = {
-#include "path.spv.inc"
+// clang-format off
+#define KERNEL_ROW(name, pass, forms, modules, unfinished) \
+    KernelRow{KernelId::name, #name, Pass::pass, Forms::forms, Modules::modules, unfinished},
+constexpr std::array rows = {KERNELS(KERNEL_ROW)};
+#undef KERNEL_ROW
+// clang-format on
+
+/// estimator: "any" for kernels of Modules::one.
+struct Module {
+    KernelId kernel;
+    std::string_view estimator;
+    std::span<const std::uint32_t> words;
 };
 
+// CMake writes both files by the rows.
+#include "kernel_words.inc"
+// clang-format off
+#define MODULE(kernel, estimator, words) Module{KernelId::kernel, estimator, words},
 constexpr std::array modules = {
-    KernelModule{"eye", eye_words},
-    KernelModule{"photon", photon_words},
-    KernelModule{"grid_plan", grid_plan_words},
-    KernelModule{"grid_clear", grid_clear_words},
-    KernelModule{"grid_key", grid_key_words},
-    KernelModule{"grid_order", grid_order_words},
-    KernelModule{"scan_sums", scan_sums_words},
-    KernelModule{"scan_blocks", scan_blocks_words},
-    KernelModule{"scan_apply", scan_apply_words},
-    KernelModule{"radix_count", radix_count_words},
-    KernelModule{"radix_scatter", radix_scatter_words},
-    KernelModule{"knn", knn_words},
-    KernelModule{"gather", gather_words},
-    KernelModule{"update", update_words},
-    KernelModule{"advance", advance_words},
-    KernelModule{"resolve", resolve_words},
-    KernelModule{"path", path_words},
+#include "kernel_modules.inc"
 };
+#undef MODULE
+// clang-format on
+
+constexpr const Module* find(KernelId kernel, std::string_view estimator) {
+    const std::string_view wanted = rows[std::size_t(kernel)].modules == Modules::one ? "any" : estimator;
+    for (const Module& module : modules) {
+        if (module.kernel == kernel && module.estimator == wanted) return &module;
+    }
+    return nullptr;
+}
+
+constexpr bool complete() {
+    std::size_t count = 0;
+    for (const KernelRow& row : rows) count += row.modules == Modules::one ? 1 : estimator_rows.size();
+    for (const KernelRow& row : rows) {
+        for (const EstimatorRow& estimator : estimator_rows) {
+            if (!find(row.id, estimator.name)) return false;
+        }
+    }
+    return count == modules.size();
+}
+static_assert(complete(), "CMake's reading of shared/kernels.h and shared/estimators.h is another than the compiler's");
 
 }  // namespace
 
-std::span<const KernelModule> kernel_modules() { return modules; }
+std::string_view name_of(Pass pass) {
+    // clang-format off
+#define NAME(name) #name,
+    static constexpr std::array names = {PASSES(NAME)};
+#undef NAME
+    // clang-format on
+    return names[std::size_t(pass)];
+}
 
-const KernelModule& kernel_module(std::string_view name) {
-    for (const KernelModule& module : modules) {
-        if (module.name == name) return module;
-    }
-    assert(false);
-    return modules.front();
+std::span<const KernelRow> kernel_rows() { return rows; }
+
+std::span<const std::uint32_t> words_of(KernelId kernel, std::string_view estimator) {
+    const Module* module = find(kernel, estimator);
+    assert(module);
+    return module->words;
 }
 
 std::uint64_t kernels_hash() {
     std::uint64_t hash = fnv1a_start;
-    for (const KernelModule& module : modules) hash = fnv1a_of(module.spirv, hash);
+    for (const Module& module : modules) hash = fnv1a_of(module.words, hash);
     return hash;
 }
 

@@ -25,7 +25,8 @@ PathTracer::PathTracer(const SceneOnDevice& scene, const Camera& camera, const S
       bindings_(device_),
       commands_(device_, bindings_, timed_launches),
       buffers_(device_, bindings_),
-      kernel_(device_, bindings_, "path", kernel_module("path").spirv, specialize(scene.flat(), settings, light)),
+      kernel_(device_, bindings_, std::string(row_of(KernelId::path).name), words_of(KernelId::path, {}),
+              specialize(scene.flat(), settings, light)),
       size_(*settings.size) {
     scene.lend(buffers_);
     Counts counts;

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "core/image.h"
+#include "render/kernels.h"
 #include "render/report.h"
 #include "render/buffers.h"
 #include "render/scene_on_device.h"
@@ -43,7 +44,7 @@ private:
     Buffers buffers_;
     Kernel kernel_;
     Extent size_;
-    PassReport pass_{"path", 0, 0.0};
+    PassReport pass_{std::string(row_of(KernelId::path).name)};
     std::uint32_t rounds_ = 1;
     std::uint32_t batches_ = 0;
     std::uint64_t rays_ = 0;

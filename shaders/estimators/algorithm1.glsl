@@ -1,32 +1,14 @@
 // Algorithm 1 of Lin et al. 2020, shared by every estimator that tests the disc.
+#ifndef ALGORITHM1_GLSL
+#define ALGORITHM1_GLSL
 
-// Statistic of the disc of the first `rings` rings over its threshold: below 1 the null hypothesis stands.
-float test_ratio(uint rings, PixelState state) {
-    switch (ESTIMATOR) {
-        case ESTIMATOR_CPPM_LF: return linear_ratio(rings);
-        case ESTIMATOR_FTEST:
-        case ESTIMATOR_FTEST_FOLD: return f_ratio(rings, state.count);
-        default: return uniform_ratio(rings);
-    }
-}
+#include "estimators/kept.glsl"
 
-void clear_statistics(uint pixel) {
-    switch (ESTIMATOR) {
-        case ESTIMATOR_SPPM:
-        case ESTIMATOR_SPPM_KZ:
-        case ESTIMATOR_CPPM_NULL: break;
-        case ESTIMATOR_APPM:
-            for (uint row = 0u; row < APPM_MOMENTS; ++row) moments[row_of(row, pixel)] = 0.0;
-            break;
-        case ESTIMATOR_FTEST:
-        case ESTIMATOR_FTEST_FOLD:
-            for (uint row = 0u; row < FTEST_MOMENTS; ++row) moments[row_of(row, pixel)] = 0.0;
-            break;
-        default:
-            for (uint row = 0u; row < DISC_CELLS; ++row) tally[row_of(row, pixel)] = 0u;
-            break;
-    }
-}
+// Of the estimator: reads what it keeps, once for all tests of an iteration.
+void read_statistics(uint pixel);
+// Of the estimator: the statistic of the disc of the first `rings` rings over its threshold; below 1 the null
+// hypothesis stands.
+float test_ratio(uint rings, PixelState state);
 
 // Starts the statistics again with the disc as it is.
 void forget(uint pixel, inout PixelState state) {
@@ -39,10 +21,10 @@ void forget(uint pixel, inout PixelState state) {
 // Once a batch is full, the disc is tested in every iteration. After a rejection the largest inner disc that passes
 // becomes the disc (rings have equal areas), or the area shrinks by k where none does; the statistics start again and
 // the batch grows by beta. A disc that has passed with as many photons as counters hold starts them again, too.
-void algorithm1_update(uint pixel, uint found, inout PixelState state) {
+void algorithm1(uint pixel, uint found, inout PixelState state) {
     state.total += found;  // an iteration stores fewer than 2^27 photons: no sum of the tally reaches 2^31
     if (!batch_is_full(state)) return;
-    if (ESTIMATOR != ESTIMATOR_FTEST && ESTIMATOR != ESTIMATOR_FTEST_FOLD) read_tally(pixel);
+    read_statistics(pixel);
     state.statistic = test_ratio(RINGS, state);
     if (state.statistic < 1.0) {
         if (float(state.total) >= MOST_PHOTONS) forget(pixel, state);
@@ -60,3 +42,5 @@ void algorithm1_update(uint pixel, uint found, inout PixelState state) {
     ++state.rejections;
     forget(pixel, state);
 }
+
+#endif

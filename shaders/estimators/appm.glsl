@@ -3,6 +3,7 @@
 // the Laplacian of the radiance's luminance, N paths so far. Both are means over iterations; Delta by the five-point
 // stencil of the kernel with the pilot bandwidth r_d; luminances times params.flux_unit.
 // Uses K(t) = 7/(2 pi) (1 - 10 t^3 + 15 t^4 - 6 t^5).
+#include "estimators/kept.glsl"
 
 const float APPM_KAPPA = 5.0 / 48.0;              // int x_1^2 K
 const float APPM_ROUGHNESS = 287.0 / (132.0 * PI);  // int K^2
@@ -12,62 +13,67 @@ const float APPM_HIGH = 2.0;
 const uint APPM_PHOTONS = 10u;                    // r = r_1 until as many were seen
 
 // pi K(t), q = t^2.
-float appm_kernel_weight(float q) {
+#define HOOK_KERNEL_WEIGHT
+float kernel_weight(float q) {
     if (q >= 1.0) return 0.0;
     float t = sqrt(q);
     return 3.5 * (1.0 + q * t * (-10.0 + t * (15.0 - 6.0 * t)));
 }
 
-float appm_first_radius2(uint pixel) {
+float first_radius2(uint pixel) {
     PixelState state = pixels_at(pixel);
     return state.count > 0.0 ? moment_at(APPM_FIRST_RADIUS2, pixel) : state.radius2;
 }
 
 // r_d^2 in the iteration at hand, n = count + 1.
-float appm_pilot2(uint pixel) {
-    return APPM_PILOT * APPM_PILOT * appm_first_radius2(pixel) * pow(pixels_at(pixel).count + 1.0, -0.25);
+float pilot2(uint pixel) {
+    return APPM_PILOT * APPM_PILOT * first_radius2(pixel) * pow(pixels_at(pixel).count + 1.0, -0.25);
 }
 
 // The stencil reaches a step and a bandwidth far.
-float appm_search_radius2(uint pixel, float radius2) { return max(radius2, 4.0 * appm_pilot2(pixel)); }
+#define HOOK_SEARCH_RADIUS2
+float search_radius2(uint pixel, float radius2) { return max(radius2, 4.0 * pilot2(pixel)); }
 
 // Sums of this invocation, in the order of APPM_SECOND_MOMENT_NOW and APPM_LAPLACIAN_NOW.
-vec2 appm_sums;
+vec2 sums;
 // What all its photons share.
-float appm_radius2;
-float appm_pilot2_now;
-vec3 appm_weight;
+float disc_radius2;
+float pilot2_now;
+vec3 hit_weight_now;
 
-void appm_record(Accepted photon, bool inside) {
-    float y = luminance(appm_weight * photon.power) * (params.inverse_paths * params.flux_unit);
+#define HOOK_RECORD STATISTIC_derivative
+void record(uint pixel, Accepted photon, bool inside) {
+    float y = luminance(hit_weight_now * photon.power) * (params.inverse_paths * params.flux_unit);
     if (inside) {
-        appm_sums.x += y * y * (float(params.photons) * appm_kernel_weight(photon.q) / (PI * appm_radius2));
+        sums.x += y * y * (float(params.photons) * kernel_weight(photon.q) / (PI * disc_radius2));
     }
     // Offset in units of r_d; sum over the four neighbours at distance 1, less four times the centre.
-    float pilot2 = appm_pilot2_now;
-    vec2 e = photon.v * sqrt(appm_radius2 / pilot2);
-    float stencil = -4.0 * appm_kernel_weight(dot(e, e));
-    stencil += appm_kernel_weight(dot(e, e) + 2.0 * e.x + 1.0) + appm_kernel_weight(dot(e, e) - 2.0 * e.x + 1.0);
-    stencil += appm_kernel_weight(dot(e, e) + 2.0 * e.y + 1.0) + appm_kernel_weight(dot(e, e) - 2.0 * e.y + 1.0);
-    appm_sums.y += y * stencil / (PI * pilot2 * pilot2);
+    vec2 e = photon.v * sqrt(disc_radius2 / pilot2_now);
+    float stencil = -4.0 * kernel_weight(dot(e, e));
+    stencil += kernel_weight(dot(e, e) + 2.0 * e.x + 1.0) + kernel_weight(dot(e, e) - 2.0 * e.x + 1.0);
+    stencil += kernel_weight(dot(e, e) + 2.0 * e.y + 1.0) + kernel_weight(dot(e, e) - 2.0 * e.y + 1.0);
+    sums.y += y * stencil / (PI * pilot2_now * pilot2_now);
 }
 
-void appm_begin(uint pixel) {
-    appm_sums = vec2(moment_at(APPM_SECOND_MOMENT_NOW, pixel), moment_at(APPM_LAPLACIAN_NOW, pixel));
-    appm_radius2 = pixels_at(pixel).radius2;
-    appm_pilot2_now = appm_pilot2(pixel);
-    appm_weight = hit_weight_at(pixel).weight;
+#define HOOK_BEGIN
+void begin(uint pixel) {
+    sums = vec2(moment_at(APPM_SECOND_MOMENT_NOW, pixel), moment_at(APPM_LAPLACIAN_NOW, pixel));
+    disc_radius2 = pixels_at(pixel).radius2;
+    pilot2_now = pilot2(pixel);
+    hit_weight_now = hit_weight_at(pixel).weight;
 }
 
-void appm_flush(uint pixel) {
-    moments[row_of(APPM_SECOND_MOMENT_NOW, pixel)] = appm_sums.x;
-    moments[row_of(APPM_LAPLACIAN_NOW, pixel)] = appm_sums.y;
+#define HOOK_FLUSH
+void flush(uint pixel) {
+    moments[row_of(APPM_SECOND_MOMENT_NOW, pixel)] = sums.x;
+    moments[row_of(APPM_LAPLACIAN_NOW, pixel)] = sums.y;
 }
 
-void appm_update(uint pixel, bool diffuse, uint found, inout PixelState state) {
+#define HOOK_UPDATE
+void update(uint pixel, bool diffuse, uint found, inout PixelState state) {
     state.total = add_saturated(state.total, found);
     if (!diffuse) return;
-    float first = sqrt(appm_first_radius2(pixel));
+    float first = sqrt(first_radius2(pixel));
     if (state.count == 0.0) moments[row_of(APPM_FIRST_RADIUS2, pixel)] = state.radius2;
     add(state.count, state.count_low, 1.0);
     float means[2];  // V, Delta

@@ -1,7 +1,10 @@
 // CPPM-GOF: the null hypothesis is a generalised odd density, p(x) + p(-x) constant, supplementary section 5.2.1: a
 // photon is counted at the opposite place with probability one half, then the test of uniformity is cppm's. The flip
 // changes the count only, never the radiance.
-void cppm_gof_record(uint pixel, Accepted photon) {
+#include "estimators/uniform.glsl"
+
+#define HOOK_RECORD STATISTIC_tally
+void record(uint pixel, Accepted photon, bool inside) {
     bool flip = random4(params.seed, launch.iteration, STREAM_GATHER, pixel, photon.index).x < 0.5;
     count(cell_bin(flip ? -photon.v : photon.v, photon.q));
 }

@@ -1,4 +1,8 @@
 // CPPM-LF: the null hypothesis is a linear density, supplementary section 5.2.2. Tallies are cppm's.
+#include "estimators/tally.glsl"
+
+#define HOOK_RECORD STATISTIC_tally
+void record(uint pixel, Accepted photon, bool inside) { count(cell_bin(photon.v, photon.q)); }
 
 // A_a = (2/3) (a^(3/2) - (a-1)^(3/2)) sin(pi/n_s) n_a^(-3/2) of ring a = ring + 1 of n_a = rings: the probability of a
 // cell changes with k1 by A_a cos(theta_s), with k2 by A_a sin(theta_s). Eq. (9).
@@ -12,7 +16,7 @@ float ring_slope(uint ring, uint rings) {
 // radius taken as 1), over its threshold; two degrees of freedom fewer. Least squares, Eq. (10); |k| at most c = 1/pi
 // keeps f positive, Eq. (12)-(15). Eq. (9) with the factor n_a^(-3/2): the printed n_a^(2/3) is a slip of the pen that
 // makes probabilities negative.
-float linear_ratio(uint rings) {
+float test_ratio(uint rings, PixelState state) {
     uint cells = rings * RING_CELLS;
     uint sum = observed_in(cells);
     if (sum == 0u) return 0.0;

@@ -1,5 +1,6 @@
 // The ablation of cppm: every full batch shrinks the area by k, without a test.
-void cppm_null_update(uint found, inout PixelState state) {
+#define HOOK_UPDATE
+void update(uint pixel, bool diffuse, uint found, inout PixelState state) {
     state.total = add_saturated(state.total, found);
     if (!batch_is_full(state)) return;
     state.radius2 *= params.k;

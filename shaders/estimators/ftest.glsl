@@ -5,31 +5,34 @@
 // Moments: rows [0, c) sums of this iteration | [c, 2c) means of the cells | [2c, 2c + rings) sums of squared
 // deviations within the cells of a ring (Welford's recurrence: nothing cancels) | [2c + rings, 3c + 2 rings) the low
 // parts of means and squares: after 10^6 samples one of them is less than the rounding of their sum.
+#include "estimators/algorithm1.glsl"
 
-const uint FTEST_MEANS = DISC_CELLS;
-const uint FTEST_SQUARES = 2u * DISC_CELLS;
-const uint FTEST_LOW = DISC_CELLS + RINGS;  // from a mean or a sum of squares to its low part
-const uint FTEST_MOMENTS = 3u * DISC_CELLS + 2u * RINGS;
+const uint MEANS = DISC_CELLS;
+const uint SQUARES = 2u * DISC_CELLS;
+const uint LOW = DISC_CELLS + RINGS;  // from a mean or a sum of squares to its low part
 
 QUANTILES(READS)
 
 // Contributions a cell that this invocation has accepted, in registers as `counted`.
 float contributed[DISC_CELLS];
-vec3 ftest_albedo;
+vec3 albedo;
 
-void ftest_record(Accepted photon) {
+#define HOOK_RECORD STATISTIC_contribution
+void record(uint pixel, Accepted photon, bool inside) {
     uint bin = cell_bin(photon.v, photon.q);
-    float x = luminance(ftest_albedo * photon.power) * params.flux_unit;
+    float x = luminance(albedo * photon.power) * params.flux_unit;
     for (uint cell = 0u; cell < DISC_CELLS; ++cell) contributed[cell] += cell == bin ? x : 0.0;
 }
 
 // The sums go on from where the round before left them: the same additions in the same order, however work is split.
-void ftest_begin(uint pixel) {
+#define HOOK_BEGIN
+void begin(uint pixel) {
     for (uint cell = 0u; cell < DISC_CELLS; ++cell) contributed[cell] = moment_at(cell, pixel);
-    ftest_albedo = hit_albedo(pixel);
+    albedo = hit_albedo(pixel);
 }
 
-void ftest_flush(uint pixel) {
+#define HOOK_FLUSH
+void flush(uint pixel) {
     for (uint cell = 0u; cell < DISC_CELLS; ++cell) moments[row_of(cell, pixel)] = contributed[cell];
 }
 
@@ -37,29 +40,31 @@ void ftest_flush(uint pixel) {
 float cell_mean[DISC_CELLS];
 float ring_squares[RINGS];
 
+void read_statistics(uint pixel) {}  // take_sample() has
+
 // Reads them; where the pixel is `diffuse`, takes this iteration's sums as one more sample of every cell.
-void ftest_sample(uint pixel, bool diffuse, inout PixelState state) {
+void take_sample(uint pixel, bool diffuse, inout PixelState state) {
     if (diffuse) add(state.count, state.count_low, 1.0);
     for (uint ring = 0u; ring < RINGS; ++ring) {
-        float squares = moment_at(FTEST_SQUARES + ring, pixel);
-        float squares_low = moment_at(FTEST_SQUARES + ring + FTEST_LOW, pixel);
+        float squares = moment_at(SQUARES + ring, pixel);
+        float squares_low = moment_at(SQUARES + ring + LOW, pixel);
         for (uint bin = ring * RING_CELLS; bin < (ring + 1u) * RING_CELLS; ++bin) {
-            float mean = moment_at(FTEST_MEANS + bin, pixel);
-            float mean_low = moment_at(FTEST_MEANS + bin + FTEST_LOW, pixel);
+            float mean = moment_at(MEANS + bin, pixel);
+            float mean_low = moment_at(MEANS + bin + LOW, pixel);
             if (diffuse) {
                 float x = moment_at(bin, pixel);
                 float deviation = x - mean;
                 add(mean, mean_low, deviation / state.count);
                 add(squares, squares_low, deviation * (x - mean));
-                moments[row_of(FTEST_MEANS + bin, pixel)] = mean;
-                moments[row_of(FTEST_MEANS + bin + FTEST_LOW, pixel)] = mean_low;
+                moments[row_of(MEANS + bin, pixel)] = mean;
+                moments[row_of(MEANS + bin + LOW, pixel)] = mean_low;
                 moments[row_of(bin, pixel)] = 0.0;
             }
             cell_mean[bin] = mean;
         }
         if (diffuse) {
-            moments[row_of(FTEST_SQUARES + ring, pixel)] = squares;
-            moments[row_of(FTEST_SQUARES + ring + FTEST_LOW, pixel)] = squares_low;
+            moments[row_of(SQUARES + ring, pixel)] = squares;
+            moments[row_of(SQUARES + ring + LOW, pixel)] = squares_low;
         }
         ring_squares[ring] = squares;
     }
@@ -75,7 +80,8 @@ float f_threshold(uint rings, float m) {
 
 // F = [m sum(mean_i - mean)^2 / (n - 1)] / [within / (n (m - 1))] over n cells, over its threshold. Fewer than three
 // samples pass, and so do cells that are all equal.
-float f_ratio(uint rings, float m) {
+float test_ratio(uint rings, PixelState state) {
+    float m = state.count;
     if (m < 3.0) return 0.0;
     uint cells = rings * RING_CELLS;
     float mean = 0.0;
@@ -92,4 +98,10 @@ float f_ratio(uint rings, float m) {
     if (within == 0.0) return 3.0e38;
     float f = (m * between / float(cells - 1u)) / (within / (float(cells) * (m - 1.0)));
     return f / f_threshold(rings, m);
+}
+
+#define HOOK_UPDATE
+void update(uint pixel, bool diffuse, uint found, inout PixelState state) {
+    take_sample(pixel, diffuse, state);
+    algorithm1(pixel, found, state);
 }

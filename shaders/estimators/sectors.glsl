@@ -1,9 +1,10 @@
-// The unified domain of Lin et al. 2020: the unit disc cut into n_a rings of equal area and n_s sectors.
+// The unified domain of Lin et al. 2020: the unit disc cut into n_a rings of equal area and n_s sectors. FOLDED:
+// opposite sectors are one cell, as the estimator's row says.
+#ifndef SECTORS_GLSL
+#define SECTORS_GLSL
 
-
-// Estimators that fold count opposite sectors together.
-const bool FOLDED = ESTIMATOR == ESTIMATOR_CPPM_FOLD || ESTIMATOR == ESTIMATOR_FTEST_FOLD;
 const uint RING_CELLS = FOLDED ? SECTORS / 2u : SECTORS;
+const uint DISC_CELLS = RINGS * RING_CELLS;
 
 // Bin of a photon at v, q = |offset|^2 / R^2 in [0, 1). Half-plane tests instead of an arc tangent: the same on every
 // driver. n_s is even: the lower half plane is the upper one turned by n_s / 2 sectors.
@@ -19,45 +20,4 @@ uint cell_bin(vec2 v, float q) {
     return ring * RING_CELLS + sector;
 }
 
-const uint DISC_CELLS = RINGS * RING_CELLS;
-
-// Photons a cell that this invocation has accepted, two counters of 16 bits a word: the step budget stays below 2^16.
-// Registers, added to under a comparison a word: an array in memory, or the tally itself, costs a loop over the lanes
-// of the SIMD group for every candidate.
-uint counted[(DISC_CELLS + 1u) / 2u];
-
-void count(uint bin) {
-    for (uint word = 0u; word < (DISC_CELLS + 1u) / 2u; ++word) {
-        counted[word] += bin / 2u == word ? 1u << (16u * (bin % 2u)) : 0u;
-    }
-}
-
-void tally_begin() {
-    for (uint word = 0u; word < (DISC_CELLS + 1u) / 2u; ++word) counted[word] = 0u;
-}
-
-void tally_flush(uint pixel) {
-    for (uint bin = 0u; bin < DISC_CELLS; ++bin) {
-        uint found = counted[bin / 2u] >> (16u * (bin % 2u)) & 0xffffu;
-        tally[row_of(bin, pixel)] = tally_at(bin, pixel) + found;
-    }
-}
-
-// The pixel's tally, read once for all tests of the disc.
-uint observed[DISC_CELLS];
-
-void read_tally(uint pixel) {
-    for (uint bin = 0u; bin < DISC_CELLS; ++bin) observed[bin] = tally_at(bin, pixel);
-}
-
-uint observed_in(uint cells) {
-    uint sum = 0u;
-    for (uint bin = 0u; bin < cells; ++bin) sum += observed[bin];
-    return sum;
-}
-
-// cells * count - sum: the textbook form of chi-squared cancels in floats. Here the mean is taken off in integers, and
-// what is left is exact up to 2^24 and right to a rounding error beyond. sum: below 2^31.
-float scaled_difference(uint cells, uint count, uint sum) {
-    return float(int(count - sum / cells)) * float(cells) - float(sum % cells);
-}
+#endif

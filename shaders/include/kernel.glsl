@@ -3,13 +3,12 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #include "shared/types.h"
-#include "shared/estimators.h"
+#include "shared/kernels.h"
 #include "shared/buffers.h"
 #include "include/records.glsl"
 
 layout(local_size_x_id = SPEC_WORKGROUP) in;
 layout(constant_id = SPEC_STACK) const uint STACK = 32;
-layout(constant_id = SPEC_ESTIMATOR) const uint ESTIMATOR = ESTIMATOR_CPPM;
 layout(constant_id = SPEC_RINGS) const uint RINGS = 2;
 layout(constant_id = SPEC_SECTORS) const uint SECTORS = 6;
 layout(constant_id = SPEC_FEATURES) const uint FEATURES = 0xffffffffu;

@@ -126,7 +126,7 @@ void main() {
             bool inside = squared < radius2;
             float q = squared * inverse_radius * inverse_radius;
             add_corrected(sum.flux, sum.excess,
-                          inside ? power * kernel_weight(q, (floatBitsToUint(flux.power.g) & 0x80000000u) != 0u) : vec3(0.0));
+                          inside ? power * photon_weight(q, (floatBitsToUint(flux.power.g) & 0x80000000u) != 0u) : vec3(0.0));
             sum.count += inside ? 1u : 0u;
             --steps;
             record(pixel, Accepted(vec2(dot(offset, tangent), dot(offset, bitangent)), q, power, index), inside);

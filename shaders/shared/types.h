@@ -34,7 +34,6 @@ using uint = std::uint32_t;
 // Specialization constants.
 #define SPEC_WORKGROUP 0  // invocations a work group
 #define SPEC_STACK 1      // entries of the traversal stack: the exact need of this scene's BVH
-#define SPEC_ESTIMATOR 2  // ESTIMATOR_*
 #define SPEC_RINGS 3      // n_a
 #define SPEC_SECTORS 4    // n_s, even
 #define SPEC_FEATURES 5   // FEATURE_* of this scene
@@ -386,15 +385,6 @@ struct Grid {
     uint first[GRID_LEVELS];          // its first entry of the table of cell starts
     uint entries;                     // of that table, in use: at most params.cells
 };
-
-// Passes that can run out of their step budget.
-#define PASS_EYE 1u
-#define PASS_PHOTON 2u
-#define PASS_KNN 4u
-#define PASS_GATHER 8u
-#define PASS_TRACE 32u     // of the path tracer
-#define PASS_CAPACITY 16u  // a lane stored more photons than it has slots
-#define PASS_LEVELS 64u    // the grid is to have more levels than there is room for
 
 #define RADIUS_BINS 64     // histogram of log2 R: bin = 2 * (log2 R + 24), clamped
 

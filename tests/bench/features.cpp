@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "flat/features.h"
+#include "support/pass_report.h"
 #include "support/device/rig.h"
 #include "support/scenes/shapes.h"
 
@@ -131,6 +132,8 @@ std::vector<Case> cases() {
 
 /// Device seconds of an iteration by pass, the least so far.
 using Times = std::map<std::string, double>;
+constexpr std::pair<const char*, Pass> shown[] = {
+    {"eye", Pass::eye}, {"photon", Pass::photon}, {"gather", Pass::gather}};
 
 void keep_least(Times& least, const Scene& scene, const Settings& wanted, std::uint32_t forced) {
     constexpr std::uint32_t warm = 2, timed = 4;
@@ -149,11 +152,9 @@ void keep_least(Times& least, const Scene& scene, const Settings& wanted, std::u
     integrator.fill(after);
     Times times;
     const auto add = [&](const Report& report, double sign) {
-        for (const PassReport& pass : report.passes) {
-            const bool shown = pass.name == "eye" || pass.name == "photon" || pass.name == "gather";
-            for (const std::string& row : {shown ? pass.name : std::string("other"), std::string("all")}) {
-                times[row] += sign * pass.device_seconds / timed;
-            }
+        for (const PassReport& pass : report.passes) times["all"] += sign * pass.device_seconds / timed;
+        for (const auto& [row, pass] : shown) {
+            times[row] += sign * test::report_of(report.passes, pass).device_seconds / timed;
         }
     };
     add(after, 1.0);

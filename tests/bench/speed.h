@@ -17,6 +17,7 @@
 #include "render/integrator.h"
 #include "render/settings.h"
 #include "scene/scene.h"
+#include "support/pass_report.h"
 #include "vk/device.h"
 
 namespace vkcppm::bench {
@@ -87,8 +88,8 @@ public:
     void warm_up(std::uint32_t count) { integrator_.run(count); }
 
     const Seconds& least() const { return least_; }
-    /// Device seconds an iteration of the kernels whose name begins with one of these.
-    double pass(std::initializer_list<std::string_view> names) const;
+    /// Device seconds an iteration of that pass.
+    double pass(Pass of) const { return test::report_of(passes_, of).device_seconds; }
     const Report& report() const { return report_; }  // of all iterations so far
     const FlatScene& flat() const { return flat_; }
     Integrator& integrator() { return integrator_; }

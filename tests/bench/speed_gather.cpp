@@ -65,10 +65,8 @@ public:
         field_.integrator().fill(before);
         field_.iterate();
         field_.integrator().fill(after);
-        gather_ = std::min(gather_, seconds(after, "gather") - seconds(before, "gather"));
-        double grid = 0.0;
-        for (const char* name : {"grid", "radix", "scan"}) grid += seconds(after, name) - seconds(before, name);
-        grid_ = std::min(grid_, grid);
+        gather_ = std::min(gather_, seconds(after, Pass::gather) - seconds(before, Pass::gather));
+        grid_ = std::min(grid_, seconds(after, Pass::grid) - seconds(before, Pass::grid));
     }
 
     /// So far does not count.
@@ -112,10 +110,8 @@ private:
         return all;
     }
 
-    static double seconds(const Report& report, std::string_view name) {
-        double sum = 0.0;
-        for (const PassReport& pass : report.passes) sum += pass.name.starts_with(name) ? pass.device_seconds : 0.0;
-        return sum;
+    static double seconds(const Report& report, Pass pass) {
+        return test::report_of(report.passes, pass).device_seconds;
     }
 
     test::DiscField field_;

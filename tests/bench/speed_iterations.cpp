@@ -55,11 +55,11 @@ Table bench_iterations(const Bench& bench) {
         for (int run = 0; run < bench.runs; ++run) render.run(4);
         const Report& after = render.report();
         const double count = double(after.iterations - before.iterations);
-        const double photon = render.pass({"photon"}), eye = render.pass({"eye"});
-        const auto ms = [&](std::initializer_list<std::string_view> names) { return 1e3 * render.pass(names); };
-        table.rows.push_back({of.name, size_text(of.size), of.photons, 1e3 * eye, 1e3 * photon,
-                              ms({"grid", "radix", "scan"}), ms({"knn"}), ms({"gather"}), ms({"update", "advance"}),
-                              1e3 * render.least().device, render.least().cpu, 1e-6 * of.photons / photon,
+        const double photon = render.pass(Pass::photon), eye = render.pass(Pass::eye);
+        const auto ms = [&](Pass pass) { return 1e3 * render.pass(pass); };
+        table.rows.push_back({of.name, size_text(of.size), of.photons, 1e3 * eye, 1e3 * photon, ms(Pass::grid),
+                              ms(Pass::knn), ms(Pass::gather), ms(Pass::update), 1e3 * render.least().device,
+                              render.least().cpu, 1e-6 * of.photons / photon,
                               1e-6 * double(after.stored_photons - before.stored_photons) / count / photon,
                               1e-6 * double(after.rays - before.rays) / count / (eye + photon)});
     }

@@ -97,12 +97,4 @@ void Render::run(std::uint32_t count) {
     }
 }
 
-double Render::pass(std::initializer_list<std::string_view> names) const {
-    double sum = 0.0;
-    for (const PassReport& pass : passes_) {
-        for (const std::string_view name : names) sum += pass.name.starts_with(name) ? pass.device_seconds : 0.0;
-    }
-    return sum;
-}
-
 }  // namespace vkcppm::bench

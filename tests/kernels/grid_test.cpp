@@ -190,9 +190,9 @@ TEST_F(GridOrder, ExclusiveScanOfAnyRange) {
         for (auto& value : values) value = random() % 200000u;  // the largest sums wrap, here as there
         rig.integrator.buffer(Binding::counters).upload(values);
         const gpu::Launch launch{.iteration = 0, .round = 0, .last_round = 1, .offset = offset, .count = asked};
-        rig.integrator.run_kernel("scan_sums", 4096, launch);
-        rig.integrator.run_kernel("scan_blocks", 64, launch);
-        rig.integrator.run_kernel("scan_apply", 4096, launch);
+        rig.integrator.run_kernel(KernelId::scan_sums, 4096, launch);
+        rig.integrator.run_kernel(KernelId::scan_blocks, 64, launch);
+        rig.integrator.run_kernel(KernelId::scan_apply, 4096, launch);
         const auto scanned = rig.all<std::uint32_t>(Binding::counters);
         std::uint32_t running = 0;
         for (std::uint32_t i = 0; i < limit; ++i) {

@@ -143,7 +143,7 @@ TEST_P(Update, DecidesAsTheReference) {
         rig.integrator.buffer(Binding::gathered).upload(gathered);
         rig.integrator.buffer(Binding::hit_position).upload(hits);
         rig.integrator.buffer(Binding::tally).upload(tally);
-        rig.integrator.run_kernel("update", pixels,
+        rig.integrator.run_kernel(KernelId::update, pixels,
                                   {.iteration = 0, .round = 0, .last_round = 1, .offset = 0, .count = 0});
         const auto after = rig.all<gpu::PixelState>(Binding::pixels);
         const auto tally_after = rig.all<std::uint32_t>(Binding::tally);
@@ -260,7 +260,7 @@ TEST_F(FilmSum, AddsTheEstimateWithTheRadiusBeforeTheUpdate) {
     rig.integrator.buffer(Binding::hit_emission).upload(emissions);
     rig.integrator.buffer(Binding::gathered).upload(gathered);
     rig.integrator.buffer(Binding::pixels).upload(states);
-    rig.integrator.run_kernel("update", rig.pixels(),
+    rig.integrator.run_kernel(KernelId::update, rig.pixels(),
                               {.iteration = 0, .round = 0, .last_round = 1, .offset = 1, .count = 0});
     const auto after = rig.all<gpu::Film>(Binding::film);
     const auto pixels = rig.all<gpu::PixelState>(Binding::pixels);
@@ -322,9 +322,8 @@ TEST_F(FilmSum, ManyAdditionsDoNotStagnate) {
         for (const float value : values) records.push_back({glm::vec3(value, 2.0f * value, 0.7f * value), 0.0f});
         emission.upload(records);
     };
-    const Kernel kernel(
-        plain_device(), bindings, "update", kernel_module("update").spirv,
-        {{SPEC_WORKGROUP, 64}, {SPEC_ESTIMATOR, find_estimator("sppm").id}, {SPEC_RINGS, 2}, {SPEC_SECTORS, 6}});
+    const Kernel kernel(plain_device(), bindings, "update", words_of(KernelId::update, "sppm"),
+                        {{SPEC_WORKGROUP, 64}, {SPEC_RINGS, 2}, {SPEC_SECTORS, 6}});
     Commands commands(plain_device(), bindings, 1);
     const auto run = [&](std::uint64_t launches) {
         commands.begin();

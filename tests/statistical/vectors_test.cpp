@@ -30,7 +30,7 @@ protected:
     }
 
     static gpu::PixelState update(SyntheticField& field) {
-        field.integrator().run_kernel("update", 1,
+        field.integrator().run_kernel(KernelId::update, 1,
                                       {.iteration = 0, .round = 0, .last_round = 1, .offset = 0, .count = 0});
         return field.states().front();
     }

@@ -50,11 +50,12 @@ TEST(KernelChoice, SoftwareVulkanHasOneFormAndLightKernelsToo) {
     device.type = "discrete";
     const std::vector<KernelForm> forms = forms_for(device);
     EXPECT_EQ(forms.front(), KernelForm{}) << "what is not measured runs in the form of software Vulkan";
-    EXPECT_EQ(forms_of("photon", forms), forms);
-    for (const char* kernel : {"update", "scan_blocks", "knn"}) {
-        EXPECT_EQ(forms_of(kernel, forms), std::vector<KernelForm>{{}}) << kernel;
+    EXPECT_EQ(forms_of(row_of(KernelId::photon), forms), forms);
+    for (const KernelId kernel : {KernelId::update, KernelId::scan_blocks, KernelId::knn}) {
+        EXPECT_EQ(forms_of(row_of(kernel), forms), std::vector<KernelForm>{{}}) << row_of(kernel).name;
     }
-    EXPECT_EQ(forms_of("eye", three), (std::vector<KernelForm>{{64, false}, {32, false}})) << "eye paths always wait";
+    EXPECT_EQ(forms_of(row_of(KernelId::eye), three), (std::vector<KernelForm>{{64, false}, {32, false}}))
+        << "eye paths always wait";
     EXPECT_EQ(text_of({128, false}), "groups of 128");
     EXPECT_EQ(text_of({64, true}), "groups of 64, lanes wait");
 }

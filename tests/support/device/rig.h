@@ -73,7 +73,7 @@ inline void gather(Rig& rig) {
         gpu::Status status = rig.status();
         status.blocked = 0;
         rig.integrator.buffer(Binding::status).upload_value(status);
-        rig.integrator.run_kernel("gather", rig.pixels(),
+        rig.integrator.run_kernel(KernelId::gather, rig.pixels(),
                                   {.iteration = 1, .round = round, .last_round = 1, .offset = 0, .count = 0});
         if (rig.status().blocked == 0) return;
     }
