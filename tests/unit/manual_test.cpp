@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 
 #include "app/options.h"
-#include "support/files.h"
-#include "support/process.h"
-#include "support/temporary_folder.h"
+#include "support/files/files.h"
+#include "support/files/process.h"
+#include "support/files/temporary_folder.h"
 
 namespace vkcppm {
 namespace {
