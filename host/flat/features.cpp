@@ -10,98 +10,101 @@
 namespace vkcppm {
 namespace {
 
-/// Adds features with their reason, in the order of the calls.
-class Collector {
-public:
-    Collector(const Scene& scene, const std::vector<SurfaceTraits>& traits)
-        : scene_(scene), traits_(traits), used_(scene.materials.size(), false) {
-        for (const Triangle& triangle : scene.triangles) used_[triangle.material] = true;
-    }
-
-    /// Where any material on a triangle has the trait.
-    void material(std::uint32_t bit, const char* name, const std::function<bool(const SurfaceTraits&)>& has) {
-        std::size_t first = scene_.materials.size(), count = 0;
-        for (std::size_t i = 0; i < traits_.size(); ++i) {
-            if (!used_[i] || !has(traits_[i])) continue;
-            first = std::min(first, i);
-            ++count;
-        }
-        if (count == 0) return;
-        const std::string more = count > 1 ? fmt::format(" and {} more", count - 1) : "";
-        add(bit, name, fmt::format("material '{}'{}", scene_.materials[first].name, more));
-    }
-
-    void light(std::uint32_t bit, const char* name, PunctualLight::Kind kind) {
-        const auto is = [&](const PunctualLight& light) { return light.kind == kind; };
-        const auto first = std::find_if(scene_.lights.begin(), scene_.lights.end(), is);
-        if (first == scene_.lights.end()) return;
-        const auto count = std::count_if(scene_.lights.begin(), scene_.lights.end(), is);
-        add(bit, name,
-            fmt::format("light '{}'{}", first->name, count > 1 ? fmt::format(" and {} more", count - 1) : ""));
-    }
-
-    void add(std::uint32_t bit, const char* name, std::string reason) {
-        features_.push_back({bit, name, std::move(reason)});
-    }
-
-    bool has(std::uint32_t bit) const { return (bits_of(features_) & bit) != 0; }
-    std::vector<Feature> take() { return std::move(features_); }
-
-private:
-    const Scene& scene_;
-    const std::vector<SurfaceTraits>& traits_;
-    std::vector<bool> used_;
-    std::vector<Feature> features_;
+/// What a scene's features are told from.
+struct Asked {
+    const Scene& scene;
+    const std::vector<SurfaceTraits>& traits;
+    const FlatScene& flat;
+    std::vector<bool> used;         // [materials] on a triangle
+    std::vector<Feature> features;  // found so far
 };
+
+/// Text for the first of several things of a kind, and how many there are; none: empty.
+std::string named(const char* kind, const std::string& first, std::size_t count) {
+    if (count == 0) return {};
+    return fmt::format("{} '{}'{}", kind, first, count > 1 ? fmt::format(" and {} more", count - 1) : "");
+}
+
+/// The reason of a feature that materials ask for: those on a triangle that have the trait. Empty: none.
+std::string reason_of(const Asked& asked, const std::function<bool(const SurfaceTraits&)>& has) {
+    std::size_t first = 0, count = 0;
+    for (std::size_t i = 0; i < asked.traits.size(); ++i) {
+        if (asked.used[i] && has(asked.traits[i]) && count++ == 0) first = i;
+    }
+    return named("material", count > 0 ? asked.scene.materials[first].name : "", count);
+}
+
+std::string reason_of(const Asked& asked, PunctualLight::Kind kind) {
+    const auto is = [&](const PunctualLight& light) { return light.kind == kind; };
+    const auto first = std::find_if(asked.scene.lights.begin(), asked.scene.lights.end(), is);
+    if (first == asked.scene.lights.end()) return {};
+    return named("light", first->name, std::size_t(std::count_if(first, asked.scene.lights.end(), is)));
+}
+
+/// The reason of a feature that the scene as a whole asks for, one function a row SCENE of FEATURE_TABLE: a row without
+/// one does not link. Empty: the scene does not have it.
+template <std::uint32_t feature> std::string reason_of(const Asked& asked);
+
+template <> std::string reason_of<FEATURE_SMOOTH>(const Asked& asked) {
+    std::size_t smooth = 0;
+    for (const gpu::TriangleShading& shading : asked.flat.shading) {
+        const SurfaceTraits& t = asked.traits[shading.material & ~SHADING_FLAT];
+        if (t.gathers() && (t.normal_map || (shading.material & SHADING_FLAT) == 0)) ++smooth;
+    }
+    return smooth > 0 ? fmt::format("{} triangles that gather photons have some", smooth) : "";
+}
+
+template <> std::string reason_of<FEATURE_TANGENTS>(const Asked& asked) {
+    const bool bent = (bits_of(asked.features) & FEATURE_NORMAL_MAPS) != 0;
+    return bent && !asked.scene.tangents.empty() ? "normal maps, and vertices that have some" : "";
+}
+
+template <> std::string reason_of<FEATURE_VERTEX_COLORS>(const Asked& asked) {
+    return asked.scene.colors.empty() ? "" : "vertices that have some";
+}
+
+template <> std::string reason_of<FEATURE_TEXTURED_LIGHTS>(const Asked& asked) {
+    const auto textured = std::count_if(asked.flat.lights.begin(), asked.flat.lights.end(),
+                                        [](const gpu::Light& l) { return l.textured != 0; });
+    return textured > 0 ? fmt::format("{} parts of emitters with a texture or alpha", textured) : "";
+}
+
+template <> std::string reason_of<FEATURE_POINT_LIGHTS>(const Asked& asked) {
+    return reason_of(asked, PunctualLight::Kind::point);
+}
+
+template <> std::string reason_of<FEATURE_SPOT_LIGHTS>(const Asked& asked) {
+    return reason_of(asked, PunctualLight::Kind::spot);
+}
+
+template <> std::string reason_of<FEATURE_DIRECTIONAL_LIGHTS>(const Asked& asked) {
+    return reason_of(asked, PunctualLight::Kind::directional);
+}
+
+template <> std::string reason_of<FEATURE_ENVIRONMENT>(const Asked& asked) {
+    if (asked.flat.environment.empty()) return {};
+    return fmt::format("a map of {}x{}", asked.scene.environment->size.width, asked.scene.environment->size.height);
+}
 
 }  // namespace
 
 std::vector<Feature> features_of(const Scene& scene, const std::vector<SurfaceTraits>& traits, const FlatScene& flat) {
-    using Traits = const SurfaceTraits&;
-    using Kind = PunctualLight::Kind;
-    Collector collect(scene, traits);
-    collect.material(FEATURE_REFLECTION, "reflection", [](Traits t) { return t.reflects(); });
-    collect.material(FEATURE_TRANSMISSION, "transmission", [](Traits t) { return t.glass; });
-    std::size_t smooth = 0;
-    for (const gpu::TriangleShading& shading : flat.shading) {
-        const Traits t = traits[shading.material & ~SHADING_FLAT];
-        if (t.gathers() && (t.normal_map || (shading.material & SHADING_FLAT) == 0)) ++smooth;
-    }
-    if (smooth > 0) {
-        collect.add(FEATURE_SMOOTH, "shading normals",
-                    fmt::format("{} triangles that gather photons have some", smooth));
-    }
-    collect.material(FEATURE_GLOSS, "directional gathering",
-                     [](Traits t) { return t.gathers() && (t.is_rough() || (t.diffuse && t.reflects())); });
-    collect.material(FEATURE_ROUGH, "rough lobes", [](Traits t) { return t.is_rough(); });
-    collect.material(FEATURE_COAT, "coats", [](Traits t) { return t.coat; });
-    collect.material(FEATURE_CLEARCOAT, "clearcoats", [](Traits t) { return t.clearcoat; });
-    collect.material(FEATURE_THIN, "thin walls", [](Traits t) { return t.thin; });
-    collect.material(FEATURE_VOLUME, "absorption", [](Traits t) { return t.absorbs; });
-    collect.material(FEATURE_DISPERSION, "dispersion", [](Traits t) { return t.disperses; });
-    collect.material(FEATURE_TEXTURES, "textures", [](Traits t) { return t.textured; });
-    collect.material(FEATURE_NORMAL_MAPS, "normal maps", [](Traits t) { return t.normal_map; });
-    if (collect.has(FEATURE_NORMAL_MAPS) && !scene.tangents.empty()) {
-        collect.add(FEATURE_TANGENTS, "tangents", "normal maps, and vertices that have some");
-    }
-    if (!scene.colors.empty()) collect.add(FEATURE_VERTEX_COLORS, "vertex colours", "vertices that have some");
-    collect.material(FEATURE_ALPHA, "alpha", [](Traits t) { return t.alpha; });
-    collect.material(FEATURE_UNLIT, "unlit surfaces", [](Traits t) { return t.unlit; });
-    collect.material(FEATURE_AREA_LIGHTS, "area lights", [](Traits t) { return t.emits && !t.unlit; });
-    const auto textured =
-        std::count_if(flat.lights.begin(), flat.lights.end(), [](const gpu::Light& l) { return l.textured != 0; });
-    if (textured > 0) {
-        collect.add(FEATURE_TEXTURED_LIGHTS, "textured lights",
-                    fmt::format("{} parts of emitters with a texture or alpha", textured));
-    }
-    collect.light(FEATURE_POINT_LIGHTS, "point lights", Kind::point);
-    collect.light(FEATURE_SPOT_LIGHTS, "spot lights", Kind::spot);
-    collect.light(FEATURE_DIRECTIONAL_LIGHTS, "directional lights", Kind::directional);
-    if (!flat.environment.empty()) {
-        collect.add(FEATURE_ENVIRONMENT, "environment",
-                    fmt::format("a map of {}x{}", scene.environment->size.width, scene.environment->size.height));
-    }
-    return collect.take();
+    Asked asked{scene, traits, flat, std::vector<bool>(traits.size(), false), {}};
+    for (const Triangle& triangle : scene.triangles) asked.used[triangle.material] = true;
+    const auto add = [&](std::uint32_t bit, const char* name, std::string reason) {
+        if (!reason.empty()) asked.features.push_back({bit, name, std::move(reason)});
+    };
+    // clang-format off
+#define MATERIAL(bit, NAME, words, trait) \
+    add(FEATURE_##NAME, #words, reason_of(asked, [](const SurfaceTraits& t) { return t.trait; }));
+#define SCENE(bit, NAME, words) add(FEATURE_##NAME, #words, reason_of<FEATURE_##NAME>(asked));
+#define SETTING(bit, NAME, words)
+    FEATURE_TABLE(MATERIAL, SCENE, SETTING)
+#undef MATERIAL
+#undef SCENE
+#undef SETTING
+    // clang-format on
+    return std::move(asked.features);
 }
 
 std::uint32_t bits_of(const std::vector<Feature>& features) {

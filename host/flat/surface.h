@@ -30,6 +30,9 @@ struct SurfaceTraits {
     bool emits = false;
     bool reflects() const { return metal || coat || glass || clearcoat; }
     bool gathers() const { return !unlit && (diffuse || is_rough()); }
+    bool is_lamp() const { return emits && !unlit; }
+    /// What arrives is weighed by its direction: a coat over a diffuse base, or a rough lobe.
+    bool glossy() const { return gathers() && (is_rough() || (diffuse && reflects())); }
     bool is_rough() const { return (rough && (metal || coat || glass)) || rough_clearcoat; }
 };
 

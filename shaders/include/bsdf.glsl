@@ -8,6 +8,14 @@
 // Width alpha = roughness^2. A lobe of width 0 is a delta: paths follow it and nothing is gathered on it.
 // What lies below a coat is weakened by 1 - F(wo . h) with the half vector of the pair of directions, so that light
 // paths and eye paths see the same surface.
+#ifndef BSDF_GLSL
+#define BSDF_GLSL
+
+#include "include/kernel.glsl"
+#include "include/frame.glsl"
+#include "include/sampling.glsl"
+#include "include/scene.glsl"
+#include "include/surface.glsl"
 
 struct Bsdf {
     vec3 diffuse;           // albedo
@@ -52,7 +60,7 @@ const float CLEARCOAT_R0 = 0.04;
 
 // Reflectance of the clearcoat, and what it leaves to the lobes below.
 float clearcoat_fresnel(Bsdf b, float cosine) {
-    if ((FEATURES & FEATURE_CLEARCOAT) == 0u) return 0.0;
+    if (!HAS_CLEARCOAT) return 0.0;
     // precise: versions of Mesa rearrange it, each in its own way, and rounding differs.
     precise float fresnel = b.clearcoat * (CLEARCOAT_R0 + (1.0 - CLEARCOAT_R0) * schlick_power(cosine));
     return fresnel;
@@ -63,7 +71,7 @@ float below_clearcoat(Bsdf b, float cosine) { return 1.0 - clearcoat_fresnel(b, 
 // Reflectance of a facet of the reflection lobe.
 vec3 facet_reflectance(Bsdf b, float cosine) {
     vec3 r = b.r0 + (b.r90 - b.r0) * schlick_power(cosine);
-    if ((FEATURES & FEATURE_TRANSMISSION) != 0u) {
+    if (HAS_TRANSMISSION) {
         float cosine_t;
         r += b.glass * fresnel_dielectric(cosine, b.eta, cosine_t);
     }
@@ -78,7 +86,7 @@ float facet_transmittance(Bsdf b, float cosine) {
 
 // What the coat leaves to the diffuse base.
 float below_coat(Bsdf b, float cosine) {
-    if ((FEATURES & FEATURE_COAT) == 0u) return 1.0;
+    if (!HAS_COAT) return 1.0;
     return 1.0 - (b.coat0 + (b.coat90 - b.coat0) * schlick_power(cosine));
 }
 
@@ -88,8 +96,8 @@ float lobe_width(float roughness) { return roughness < 3e-4 ? 0.0 : roughness * 
 // ior: index of the material for this path's wavelength. front: the ray comes from outside.
 Bsdf bsdf_of(SurfaceMaterial material, float ior, bool front) {
     Bsdf b;
-    b.thin = (FEATURES & FEATURE_THIN) != 0u && has(material, SURFACE_THIN);
-    b.glass = (FEATURES & FEATURE_TRANSMISSION) != 0u ? (1.0 - material.metallic) * material.transmission : 0.0;
+    b.thin = HAS_THIN && has(material, SURFACE_THIN);
+    b.glass = HAS_TRANSMISSION ? (1.0 - material.metallic) * material.transmission : 0.0;
     b.transmission = b.glass * material.color;
     float opaque = (1.0 - material.metallic) - b.glass;  // dielectric that does not transmit
     b.diffuse = opaque * material.color;
@@ -98,7 +106,7 @@ Bsdf bsdf_of(SurfaceMaterial material, float ior, bool front) {
     b.r0 = material.metallic * material.color;
     b.r90 = material.metallic;
     b.coat0 = b.coat90 = 0.0;
-    if ((FEATURES & FEATURE_COAT) != 0u) {
+    if (HAS_COAT) {
         float root = (1.0 - ior) / (1.0 + ior);
         vec3 coat = min(root * root * material.specular_color, vec3(1.0)) * material.specular;
         b.r0 += opaque * coat;
@@ -119,7 +127,7 @@ Bsdf black() {
 // True where photons are gathered: on a diffuse lobe or a rough one.
 bool gathers_light(Bsdf b) {
     bool any_light = largest(b.diffuse) > 0.0;
-    if ((FEATURES & FEATURE_ROUGH) != 0u) {
+    if (HAS_ROUGH) {
         any_light = any_light || (b.alpha > 0.0 && b.glass + b.r90 > 0.0) || (b.clearcoat * b.clearcoat_alpha > 0.0);
     }
     return any_light;
@@ -181,10 +189,10 @@ vec4 lobes_of(Bsdf b, Surface surface, vec3 wo) {
     float cosine = min(1.0, dot(surface.normal, wo));
     float coat = clearcoat_fresnel(b, min(1.0, dot(surface.clearcoat_normal, wo)));
     vec4 lobes = vec4(largest(b.diffuse) * below_coat(b, 1.0) * below_clearcoat(b, 1.0), 0.0, 0.0, coat);
-    if ((FEATURES & FEATURE_REFLECTION) != 0u) lobes.y = largest(facet_reflectance(b, cosine)) * (1.0 - coat);
-    if ((FEATURES & FEATURE_TRANSMISSION) != 0u) {
+    if (HAS_REFLECTION) lobes.y = largest(facet_reflectance(b, cosine)) * (1.0 - coat);
+    if (HAS_TRANSMISSION) {
         float transmittance = facet_transmittance(b, cosine);
-        if ((FEATURES & FEATURE_ROUGH) != 0u) transmittance = mix(transmittance, facet_transmittance(b, 1.0), b.alpha);
+        if (HAS_ROUGH) transmittance = mix(transmittance, facet_transmittance(b, 1.0), b.alpha);
         lobes.z = largest(b.transmission) * transmittance * (1.0 - coat);
     }
     return lobes;
@@ -231,7 +239,7 @@ vec3 sample_lobe(uint lobe, Bsdf b, Surface surface, vec2 u, bool radiance, inou
         direction = normalize(from_frame(surface.normal, sample_cosine(u)));
         float cosine = dot(direction, surface.normal);
         density = cosine / PI;
-        float wo_h = (FEATURES & (FEATURE_COAT | FEATURE_CLEARCOAT)) != 0u ? dot(wo, normalize(wo + direction)) : 1.0;
+        float wo_h = (HAS_COAT || HAS_CLEARCOAT) ? dot(wo, normalize(wo + direction)) : 1.0;
         return b.diffuse * below_coat(b, wo_h) * below_clearcoat(b, wo_h);
     }
     vec3 n = lobe == LOBE_CLEARCOAT ? surface.clearcoat_normal : surface.normal;
@@ -239,7 +247,7 @@ vec3 sample_lobe(uint lobe, Bsdf b, Surface surface, vec2 u, bool radiance, inou
     vec3 h = n;
     float masking = 1.0;  // G2 / G1
     bool straight = lobe == LOBE_TRANSMISSION && !b.thin && b.eta == 1.0;  // no facet bends it
-    bool rough = (FEATURES & FEATURE_ROUGH) != 0u && alpha > 0.0 && !straight;
+    bool rough = HAS_ROUGH && alpha > 0.0 && !straight;
     vec3 t, s;
     if (rough) {
         tangents(n, t, s);
@@ -248,7 +256,7 @@ vec3 sample_lobe(uint lobe, Bsdf b, Surface surface, vec2 u, bool radiance, inou
     }
     float wo_h = min(1.0, dot(wo, h));
     float wo_n = min(1.0, dot(wo, n));
-    if ((FEATURES & FEATURE_TRANSMISSION) == 0u || lobe != LOBE_TRANSMISSION) {
+    if (!HAS_TRANSMISSION || lobe != LOBE_TRANSMISSION) {
         if (rough) {
             direction = reflect(direction, h);
             float wi_n = dot(direction, n);
@@ -314,15 +322,15 @@ float scatter_density(Bsdf b, Surface surface, vec4 lobes, vec3 wo, vec3 wi) {
     float wi_n = dot(wi, n);
     bool reflects = dot(wi, surface.geometric) > 0.0;
     float sum = lobes.x * max(0.0, wi_n) / PI;
-    if ((FEATURES & FEATURE_ROUGH) != 0u) {
+    if (HAS_ROUGH) {
         if (b.alpha > 0.0 && reflects && wi_n > 0.0) {
             sum += lobes.y * reflection_pdf(b.alpha, n, wo, normalize(wo + wi));
         }
-        if ((FEATURES & FEATURE_CLEARCOAT) != 0u && b.clearcoat_alpha > 0.0 && reflects) {
+        if (HAS_CLEARCOAT && b.clearcoat_alpha > 0.0 && reflects) {
             vec3 c = surface.clearcoat_normal;
             if (dot(wi, c) > 0.0) sum += lobes.w * reflection_pdf(b.clearcoat_alpha, c, wo, normalize(wo + wi));
         }
-        if ((FEATURES & FEATURE_TRANSMISSION) != 0u && b.alpha > 0.0 && !reflects && wi_n < 0.0) {
+        if (HAS_TRANSMISSION && b.alpha > 0.0 && !reflects && wi_n < 0.0) {
             if (b.thin) {
                 sum += lobes.z * reflection_pdf(b.alpha, n, wo, normalize(wo + wi - 2.0 * wi_n * n));
             } else if (b.eta != 1.0) {
@@ -363,12 +371,12 @@ vec3 rough_bsdf(Bsdf b, Surface surface, vec3 wo, vec3 wi, uint part) {
         float wo_h = min(1.0, dot(wo, h));
         float below = below_clearcoat(b, wo_h);
         if (part != PART_FOLLOWED) sum = b.diffuse * (below_coat(b, wo_h) * below / PI);
-        if ((FEATURES & FEATURE_ROUGH) != 0u && b.alpha > 0.0) {
+        if (HAS_ROUGH && b.alpha > 0.0) {
             float lobe = rough_lobe(part, b.alpha, reflection_pdf(b.alpha, n, wo, h), wo_n, wi_n);
             sum += facet_reflectance(b, wo_h) * (below * lobe);
         }
     }
-    bool coats = (FEATURES & FEATURE_ROUGH) != 0u && (FEATURES & FEATURE_CLEARCOAT) != 0u;
+    bool coats = HAS_ROUGH && HAS_CLEARCOAT;
     if (coats && b.clearcoat_alpha > 0.0 && reflects) {
         vec3 c = surface.clearcoat_normal;
         float wo_c = dot(wo, c);
@@ -381,7 +389,7 @@ vec3 rough_bsdf(Bsdf b, Surface surface, vec3 wo, vec3 wi, uint part) {
             sum += vec3(clearcoat_fresnel(b, min(1.0, dot(wo, h))) * lobe * (wi_n > 0.0 ? wi_c / wi_n : 0.0));
         }
     }
-    if ((FEATURES & FEATURE_ROUGH) != 0u && (FEATURES & FEATURE_TRANSMISSION) != 0u && b.alpha > 0.0 && !reflects &&
+    if (HAS_ROUGH && HAS_TRANSMISSION && b.alpha > 0.0 && !reflects &&
         wi_n < 0.0 && b.glass > 0.0) {
         vec3 tint = b.transmission * below_clearcoat(b, min(1.0, wo_n));
         if (b.thin) {
@@ -403,3 +411,5 @@ vec3 rough_bsdf(Bsdf b, Surface surface, vec3 wo, vec3 wi, uint part) {
     }
     return sum;
 }
+
+#endif

@@ -1,4 +1,12 @@
 // Where eye paths start.
+#ifndef CAMERA_GLSL
+#define CAMERA_GLSL
+
+#include "include/kernel.glsl"
+#include "include/bounds.glsl"
+#include "include/rng.glsl"
+#include "include/sampling.glsl"
+
 #define LENS_DIMENSION 6u  // stratified dimensions 0 and 1 place the ray in the pixel, 6 and 7 on the lens
 
 // Ray number `sequence` of a pixel, through a random point of it (box filter) and of the lens; distance: from the eye
@@ -12,7 +20,7 @@ void camera_ray(uint pixel, uint sequence, out vec3 origin, out vec3 direction, 
     vec3 through = params.forward + film.x * params.right - film.y * params.up;
     vec3 eye = params.eye + params.start * (film.x * params.right - film.y * params.up);
     distance = params.start * length(through);
-    if ((FEATURES & FEATURE_LENS) != 0u) {
+    if (HAS_LENS) {
         // A thin lens: what lies in the plane of focus is met by rays from all of it.
         vec2 u = vec2(stratified(params.seed, sequence, pixel, LENS_DIMENSION),
                       stratified(params.seed, sequence, pixel, LENS_DIMENSION + 1u));
@@ -25,3 +33,5 @@ void camera_ray(uint pixel, uint sequence, out vec3 origin, out vec3 direction, 
     origin = enter_bounds(eye, direction);
     distance += length(origin - eye);
 }
+
+#endif

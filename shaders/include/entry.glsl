@@ -1,6 +1,12 @@
 // Where light from infinity enters the scene: by the box of its bounds or, where that shows less of itself, by their
 // sphere. What misses the scene is wasted: the box about a ball shows twice as much as the ball, the sphere about a
 // plain many times as much as the plain seen at a slant. After sampling.glsl and frame.glsl.
+#ifndef ENTRY_GLSL
+#define ENTRY_GLSL
+
+#include "include/kernel.glsl"
+#include "include/frame.glsl"
+#include "include/sampling.glsl"
 
 // What the faces of the box across x, y and z show of themselves along a unit vector: the at most three that are turned
 // to the light cover the silhouette once.
@@ -35,3 +41,5 @@ vec3 sample_entry(vec3 direction, vec2 u) {
     }
     return mix(params.bounds_low, params.bounds_high, place);
 }
+
+#endif

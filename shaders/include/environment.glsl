@@ -1,6 +1,11 @@
 // Light from infinitely far away, constant over each pixel of a map. Reads environment and its alias table, which is in
 // proportion to the flux into the scene: see entry.glsl.
+#ifndef ENVIRONMENT_GLSL
+#define ENVIRONMENT_GLSL
+
+#include "include/kernel.glsl"
 #include "include/angle.glsl"
+#include "include/sampling.glsl"
 
 ENVIRONMENT(FLOAT_TEXELS)
 ENVIRONMENT_ALIAS(TEXELS)
@@ -45,3 +50,5 @@ vec3 sample_environment(uint bits, float keep, vec2 u, out vec3 direction) {
     direction = vec3(r * cos(azimuth), y, r * sin(azimuth));
     return entry.rgb * (3.0 / ((entry.r + entry.g + entry.b) * environment_area(pixel)));
 }
+
+#endif

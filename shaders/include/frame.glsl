@@ -1,4 +1,6 @@
 // Directions: octahedral packing and tangent frames. Pure functions.
+#ifndef FRAME_GLSL
+#define FRAME_GLSL
 
 // Unit vector <-> snorm16x2 on the octahedron (Cigolle et al., JCGT 3(2), 2014). Error at most 6.5e-5 rad.
 uint pack_direction(vec3 n) {
@@ -46,3 +48,5 @@ vec3 from_frame(vec3 n, vec3 local) {
     tangents(n, t, b);
     return local.x * t + local.y * b + local.z * n;
 }
+
+#endif

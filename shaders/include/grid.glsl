@@ -1,6 +1,11 @@
 // The hashed grid of photons, of up to GRID_LEVELS levels, each a table of its own. Cells of one row along x stand
 // together in the table. While the box of cells fits the table the hash is the identity (dense rows); else runs of
 // HASH_RUN cells along x are hashed, and whoever reads a bucket must compare the photon's own cell.
+#ifndef GRID_GLSL
+#define GRID_GLSL
+
+#include "include/kernel.glsl"
+
 GRID(VALUE)
 
 #define HASH_RUN 8
@@ -39,3 +44,5 @@ uint cell_index(GridLevel level, ivec3 cell) {
     hash ^= hash >> 15u;
     return level.first + ((hash * HASH_RUN) & level.dims.w) + uint(cell.x) % HASH_RUN;
 }
+
+#endif

@@ -1,4 +1,9 @@
 // What the eye pass leaves a pixel, one array a record: written as storage, read as texels.
+#ifndef HITS_GLSL
+#define HITS_GLSL
+
+#include "include/kernel.glsl"
+
 HIT_POSITION(STORES)
 HIT_WEIGHT(STORES)
 HIT_EMISSION(STORES)
@@ -20,3 +25,5 @@ vec3 hit_albedo(uint pixel) {
 
 // Relative luminance, Rec. 709.
 float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }
+
+#endif

@@ -1,4 +1,7 @@
 // What every kernel starts with: shared types, specialization constants, the launch block, buffers.
+#ifndef KERNEL_GLSL
+#define KERNEL_GLSL
+
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
@@ -16,6 +19,12 @@ layout(constant_id = SPEC_DIGIT_BITS) const uint DIGIT_BITS = 7;
 layout(constant_id = SPEC_NODE_BITS) const uint NODE_BITS = 20;
 layout(constant_id = SPEC_LEVELS) const uint LEVELS = GRID_LEVELS;
 layout(constant_id = SPEC_WAITS) const uint WAITS = 0u;
+
+#define HAS_FEATURE(bit, NAME, words) const bool HAS_##NAME = (FEATURES & FEATURE_##NAME) != 0u;
+#define HAS_FEATURE_OF_MATERIAL(bit, NAME, words, trait) HAS_FEATURE(bit, NAME, words)
+FEATURE_TABLE(HAS_FEATURE_OF_MATERIAL, HAS_FEATURE, HAS_FEATURE)
+const bool HAS_PUNCTUAL_LIGHTS = (FEATURES & FEATURES_OF_PUNCTUAL_LIGHTS) != 0u;
+const bool EYE_PATHS_ASK = ASKS_FOR_LIGHTS(FEATURES);
 
 layout(push_constant, scalar) uniform LaunchBlock { Launch launch; };
 PARAMS(UNIFORM)
@@ -57,3 +66,5 @@ void count_rays(uint rays) {
 }
 
 uint pixel_count() { return params.width * params.height; }
+
+#endif

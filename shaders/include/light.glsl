@@ -1,5 +1,16 @@
 // Light sources. Reads lights, and textures of those that have them.
+#ifndef LIGHT_GLSL
+#define LIGHT_GLSL
+
+#include "include/kernel.glsl"
 #include "include/entry.glsl"
+#include "include/environment.glsl"
+#include "include/frame.glsl"
+#include "include/rng.glsl"
+#include "include/sampling.glsl"
+#include "include/scene.glsl"
+#include "include/surface.glsl"
+#include "include/texture.glsl"
 
 LIGHTS(RECORDS)
 
@@ -7,17 +18,17 @@ LIGHTS(RECORDS)
 vec3 emitted_share(Light light, vec2 b) {
     vec2 barycentric = (1.0 - b.x - b.y) * light.corner[0] + b.x * light.corner[1] + b.y * light.corner[2];
     SurfaceMaterial material = materials_at(texelFetch(shading_texels, int(light.triangle)).w & ~SHADING_FLAT);
-    vec4 coordinates = (FEATURES & FEATURE_TEXTURES) != 0u ? texcoords_at(light.triangle, barycentric) : vec4(0.0);
-    if ((FEATURES & FEATURE_ALPHA) != 0u) {
-        if ((FEATURES & FEATURE_VERTEX_COLORS) != 0u) {
+    vec4 coordinates = HAS_TEXTURES ? texcoords_at(light.triangle, barycentric) : vec4(0.0);
+    if (HAS_ALPHA) {
+        if (HAS_VERTEX_COLORS) {
             material.opacity *= vertex_color_at(light.triangle, barycentric).a;
         }
-        if ((FEATURES & FEATURE_TEXTURES) != 0u) {
+        if (HAS_TEXTURES) {
             material.opacity *= texture_at(material.texture[TEXTURE_BASE_COLOR], coordinates).a;
         }
     }
     vec3 share = vec3(coverage_of(material));
-    if ((FEATURES & FEATURE_TEXTURES) != 0u) share *= texture_at(material.texture[TEXTURE_EMISSIVE], coordinates).rgb;
+    if (HAS_TEXTURES) share *= texture_at(material.texture[TEXTURE_EMISSIVE], coordinates).rgb;
     return share;
 }
 
@@ -42,7 +53,7 @@ float emitter_density(vec3 emission, bool double_sided) {
 // The same per solid angle, 1/sr, for a ray that meets the emitter `distance` away.
 float met_density(SurfaceMaterial material, Surface surface, vec3 direction, float distance) {
     // Without textures, as where the light is asked for.
-    vec3 emission = (FEATURES & FEATURE_TEXTURES) != 0u ? materials_at(surface.material).emission : material.emission;
+    vec3 emission = HAS_TEXTURES ? materials_at(surface.material).emission : material.emission;
     float cosine = max(1e-12, -dot(direction, surface.geometric));
     return emitter_density(emission, has(material, SURFACE_DOUBLE_SIDED)) * distance * distance / cosine;
 }
@@ -72,7 +83,7 @@ LightSample sample_light(uvec4 bits, vec2 v, vec3 position) {
     Light light = choose_light(bits, index);
     vec3 towards = light.position - position;
     LightSample s = LightSample(vec3(0.0), 3.0e38, vec3(0.0), 0.0, NO_TRIANGLE);
-    if ((FEATURES & FEATURE_AREA_LIGHTS) != 0u && light.kind == LIGHT_TRIANGLE) {
+    if (HAS_AREA_LIGHTS && light.kind == LIGHT_TRIANGLE) {
         vec2 b = sample_triangle(u.zw);
         towards += b.x * light.e1 + b.y * light.e2;
         s.distance = length(towards);
@@ -84,10 +95,10 @@ LightSample sample_light(uvec4 bits, vec2 v, vec3 position) {
         SurfaceMaterial material = materials_at(texelFetch(shading_texels, int(s.triangle)).w & ~SHADING_FLAT);
         float inverse = cosine / (s.distance * s.distance);
         s.radiance = light.power * (inverse / (double_sided ? 2.0 * PI : PI));
-        if ((FEATURES & FEATURE_TEXTURED_LIGHTS) != 0u && light.textured != 0u) s.radiance *= emitted_share(light, b);
+        if (HAS_TEXTURED_LIGHTS && light.textured != 0u) s.radiance *= emitted_share(light, b);
         if (cosine > 0.0) s.density = emitter_density(material.emission, double_sided) / inverse;
     }
-    if ((FEATURES & (FEATURE_POINT_LIGHTS | FEATURE_SPOT_LIGHTS)) != 0u &&
+    if ((HAS_POINT_LIGHTS || HAS_SPOT_LIGHTS) &&
         (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT)) {
         s.distance = length(towards);
         s.direction = towards / s.distance;
@@ -99,11 +110,11 @@ LightSample sample_light(uvec4 bits, vec2 v, vec3 position) {
                           (2.0 * PI * (light.e2.x + (light.e2.y - light.e2.x) / 3.0));
         }
     }
-    if ((FEATURES & FEATURE_DIRECTIONAL_LIGHTS) != 0u && light.kind == LIGHT_DIRECTIONAL) {
+    if (HAS_DIRECTIONAL_LIGHTS && light.kind == LIGHT_DIRECTIONAL) {
         s.direction = -light.e1;
         s.radiance = light.power / entry_area(light.e1);
     }
-    if ((FEATURES & FEATURE_ENVIRONMENT) != 0u && light.kind == LIGHT_ENVIRONMENT) {
+    if (HAS_ENVIRONMENT && light.kind == LIGHT_ENVIRONMENT) {
         s.radiance = light.power * sample_environment(bits.z, u.w, v, s.direction);
         s.density = environment_density(s.direction);
     }
@@ -120,7 +131,7 @@ uint emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 powe
     Light light = choose_light(bits, index);
     power = light.power;
     // One kind after the other, each only where the scene has it.
-    if ((FEATURES & FEATURE_AREA_LIGHTS) != 0u && light.kind == LIGHT_TRIANGLE) {
+    if (HAS_AREA_LIGHTS && light.kind == LIGHT_TRIANGLE) {
         vec2 b = sample_triangle(u.zw);
         vec3 n = face_normal(light.e1, light.e2);
         if (light.double_sided != 0u && v.w < 0.5) n = -n;
@@ -129,21 +140,21 @@ uint emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 powe
         vec3 extent = abs(light.position) + abs(light.e1) + abs(light.e2);
         float error = 4.8e-7 * max(extent.x, max(extent.y, extent.z));
         origin = light.position + b.x * light.e1 + b.y * light.e2 + error * n;
-        if ((FEATURES & FEATURE_TEXTURED_LIGHTS) != 0u && light.textured != 0u) power *= emitted_share(light, b);
+        if (HAS_TEXTURED_LIGHTS && light.textured != 0u) power *= emitted_share(light, b);
     }
-    if ((FEATURES & FEATURE_POINT_LIGHTS) != 0u && light.kind == LIGHT_POINT) {
+    if (HAS_POINT_LIGHTS && light.kind == LIGHT_POINT) {
         direction = sample_azimuth(1.0 - 2.0 * v.x, v.y);
         origin = light.position;
     }
-    if ((FEATURES & FEATURE_SPOT_LIGHTS) != 0u && light.kind == LIGHT_SPOT) {
+    if (HAS_SPOT_LIGHTS && light.kind == LIGHT_SPOT) {
         direction = normalize(from_frame(light.e1, sample_cone(sample_spot_versine(light.e2.x, light.e2.y, v.x), v.y)));
         origin = light.position;
     }
-    if ((FEATURES & FEATURE_DIRECTIONAL_LIGHTS) != 0u && light.kind == LIGHT_DIRECTIONAL) {
+    if (HAS_DIRECTIONAL_LIGHTS && light.kind == LIGHT_DIRECTIONAL) {
         direction = light.e1;
         origin = sample_entry(direction, v.xy);
     }
-    if ((FEATURES & FEATURE_ENVIRONMENT) != 0u && light.kind == LIGHT_ENVIRONMENT) {
+    if (HAS_ENVIRONMENT && light.kind == LIGHT_ENVIRONMENT) {
         vec3 away;
         power *= sample_environment(bits.z, u.w, v.xy, away);
         direction = -away;
@@ -152,3 +163,5 @@ uint emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 powe
     }
     return light.kind;
 }
+
+#endif

@@ -1,11 +1,21 @@
 // Rays that ask for a light (next-event estimation). Surfaces that are partly there let that part pass, all others stop
 // them, glass too. Pure functions.
+#ifndef LIGHT_RAY_GLSL
+#define LIGHT_RAY_GLSL
+
+#include "include/kernel.glsl"
+#include "include/bsdf.glsl"
+#include "include/light.glsl"
+#include "include/path.glsl"
+#include "include/scene.glsl"
+#include "include/surface.glsl"
+#include "include/traverse.glsl"
 
 LightRay no_light_ray() { return LightRay(vec3(0.0), 0.0, vec3(0.0), NO_TRIANGLE, vec3(0.0)); }
 
 // What the solid that the ray goes through lets pass. memory: of the path that asks, at the surface.
 vec3 transmittance_to(LightSample light, uint memory, Bsdf bsdf, Surface surface) {
-    if ((FEATURES & FEATURE_VOLUME) == 0u) return vec3(1.0);
+    if (!HAS_VOLUME) return vec3(1.0);
     bool through = dot(light.direction, surface.geometric) < 0.0;
     uint medium = pass_boundary(memory, bsdf, through ? LOBE_TRANSMISSION : LOBE_NONE, surface) >> PATH_MEDIUM_SHIFT;
     return medium == PATH_NO_MEDIUM ? vec3(1.0) : exp(-light.distance * absorption_of(medium));
@@ -37,3 +47,5 @@ void pass_surface(inout LightRay ray, Surface surface, float t, float coverage) 
     ray.origin = leave(surface, ray.direction);
     ray.distance = coverage < 1.0 ? max(1e-30, ray.distance - t) : 0.0;
 }
+
+#endif

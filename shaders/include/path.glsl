@@ -1,5 +1,12 @@
 // What a path remembers from bounce to bounce besides its ray and its throughput: the solid that it is in and whether
 // it has a wavelength, in one word (PATH_*).
+#ifndef PATH_GLSL
+#define PATH_GLSL
+
+#include "include/kernel.glsl"
+#include "include/bsdf.glsl"
+#include "include/scene.glsl"
+#include "include/surface.glsl"
 #include "include/wavelength.glsl"
 
 #define PATH_OUTSIDE (PATH_NO_MEDIUM << PATH_MEDIUM_SHIFT)
@@ -17,7 +24,7 @@ vec3 transmittance(uint memory, Surface surface, float distance) {
 
 // The memory after a lobe was followed: through the boundary of a solid lies its inside, or the outside.
 uint pass_boundary(uint memory, Bsdf bsdf, uint lobe, Surface surface) {
-    if ((FEATURES & FEATURE_VOLUME) == 0u || lobe != LOBE_TRANSMISSION || bsdf.thin) return memory;
+    if (!HAS_VOLUME || lobe != LOBE_TRANSMISSION || bsdf.thin) return memory;
     uint medium = surface.front ? surface.material : PATH_NO_MEDIUM;
     return (memory & ((1u << PATH_MEDIUM_SHIFT) - 1u)) | medium << PATH_MEDIUM_SHIFT;
 }
@@ -30,9 +37,11 @@ uint leave_lobe(uint memory, float density) {
 
 // The index of refraction that the path meets. At its first dispersive surface it is given its wavelength.
 float index_for_path(SurfaceMaterial material, uint stream, uint path, inout uint memory, inout vec3 throughput) {
-    if ((FEATURES & FEATURE_DISPERSION) == 0u || material.cauchy == 0.0) return material.ior;
+    if (!HAS_DISPERSION || material.cauchy == 0.0) return material.ior;
     float wavelength = wavelength_of(stream, path);
     if ((memory & PATH_DISPERSED) == 0u) throughput *= wavelength_weight(wavelength);
     memory |= PATH_DISPERSED;
     return index_at(material.ior, material.cauchy, wavelength);
 }
+
+#endif

@@ -1,4 +1,9 @@
 // What a pixel remembers between iterations: its radius and the statistics of its estimator.
+#ifndef PIXELS_GLSL
+#define PIXELS_GLSL
+
+#include "include/kernel.glsl"
+
 PIXELS(STORES)
 PIXELS(RECORDS)
 
@@ -10,3 +15,5 @@ const float RADIUS2_MIN = 1e-12;
 const float MOST_PHOTONS = 1073741824.0;
 
 bool batch_is_full(PixelState state) { return float(state.total) >= min(state.batch, MOST_PHOTONS); }
+
+#endif

@@ -1,6 +1,8 @@
 // Counter-based random numbers: a pure function of (seed, iteration, stream, path, dimension), so that the same seed
 // gives the same bits in any order of execution. PCG4D: Jarzynski and Olano, "Hash Functions for GPU Rendering",
 // JCGT 9(3), 2020.
+#ifndef RNG_GLSL
+#define RNG_GLSL
 
 #define STREAM_EYE 0u
 #define STREAM_PHOTON 1u
@@ -53,3 +55,5 @@ float stratified(uint seed, uint iteration, uint pixel, uint dimension) {
     uint shift = pcg4d(uvec4(pixel, dimension, STREAM_SHIFT, seed)).x;
     return float((shift + iteration * RECURRENCE[dimension]) >> 8u) * 5.9604644775390625e-8;
 }
+
+#endif

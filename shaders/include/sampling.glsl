@@ -1,4 +1,6 @@
 // Samples of the unit square mapped to the distributions that light needs. Pure functions.
+#ifndef SAMPLING_GLSL
+#define SAMPLING_GLSL
 
 const float PI = 3.14159265358979;
 
@@ -52,3 +54,5 @@ float sample_spot_versine(float inner, float outer, float u) {
     float x = u * (edge + inner);
     return max(0.0, x < edge ? outer - (outer - inner) * pow(x / edge, 1.0 / 3.0) : inner - (x - edge));
 }
+
+#endif

@@ -1,4 +1,9 @@
 // The scene's buffers, read through texels: 1.6 times faster than storage buffers on software Vulkan.
+#ifndef SCENE_GLSL
+#define SCENE_GLSL
+
+#include "include/kernel.glsl"
+
 NODES(TEXELS)
 TRIANGLES(FLOAT_TEXELS)
 SHADING(TEXELS)
@@ -30,3 +35,5 @@ vec4 vertex_color_at(uint triangle, vec2 barycentric) {
     vec4 c2 = vec4(unpackHalf2x16(b.x), unpackHalf2x16(b.y));
     return (1.0 - barycentric.x - barycentric.y) * c0 + barycentric.x * c1 + barycentric.y * c2;
 }
+
+#endif

@@ -1,5 +1,12 @@
 // A resumable walk over the photons of the cells that a ball touches, segment of a row by segment. Reads the grid, the
 // cell starts and the sorted photons.
+#ifndef SEARCH_GLSL
+#define SEARCH_GLSL
+
+#include "include/kernel.glsl"
+#include "include/frame.glsl"
+#include "include/grid.glsl"
+
 COUNTERS(TEXELS)
 SORTED(RECORDS)
 CURSORS(UPDATES)
@@ -49,7 +56,7 @@ bool in_segment(GridLevel level, Walk walk, vec3 position) {
 bool accepted_side(uint packed, vec3 normal, bool both_sides) {
     vec3 n = unpack_octahedron(packed);
     float d = dot(n, normal);
-    if ((FEATURES & FEATURE_ROUGH) != 0u && (FEATURES & FEATURE_TRANSMISSION) != 0u) d = both_sides ? abs(d) : d;
+    if (HAS_ROUGH && HAS_TRANSMISSION) d = both_sides ? abs(d) : d;
     return d > 0.0 && d * d >= NORMAL_AGREEMENT * NORMAL_AGREEMENT * dot(n, n);
 }
 
@@ -85,3 +92,5 @@ bool accepts(GridLevel level, Walk walk, Photon photon, vec3 position, float rea
 ivec3 cursor_cell(Cursor cursor, CellBox box) { return cursor.cell.x == CURSOR_START ? box.low : ivec3(cursor.cell); }
 
 bool walked(Cursor cursor, CellBox box) { return int(cursor.cell.z) > box.high.z; }
+
+#endif

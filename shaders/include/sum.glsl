@@ -1,4 +1,6 @@
 // Sums of very many terms, and what must not take part in one. Pure functions.
+#ifndef SUM_GLSL
+#define SUM_GLSL
 
 // Adds `value` to the sum of two floats, `low` below half an ulp of `sum` (Dekker 1971): 10^6 additions err by 10^6
 // 2^-47 of the sum. A `low` that is only added to (Neumaier 1974) grows until its own rounding shows, with the square
@@ -42,3 +44,5 @@ uint add_saturated(uint counter, uint value) {
 bool finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
 
 bool finite(vec3 v) { return finite(v.x) && finite(v.y) && finite(v.z); }
+
+#endif

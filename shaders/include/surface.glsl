@@ -1,5 +1,14 @@
 // The surface at a hit, on the side from which it was met: its point, its normals and its material with all textures.
 // Reads triangles, shading, vertex attributes, materials and textures.
+#ifndef SURFACE_GLSL
+#define SURFACE_GLSL
+
+#include "include/kernel.glsl"
+#include "include/frame.glsl"
+#include "include/scene.glsl"
+#include "include/texture.glsl"
+#include "include/traverse.glsl"
+
 struct Surface {
     vec3 position;
     vec3 geometric;         // unit normals on the side of the incoming ray
@@ -55,7 +64,7 @@ vec3 leave(Surface surface, vec3 direction) {
 // The tangent of the triangle at the hit, on its front: that of the file, else the derivative of the point by u.
 // w: the sign of the bitangent; 0 where there is no tangent to be had.
 vec4 tangent_at(Hit hit, vec3 front_normal, bool second_uv) {
-    if ((FEATURES & FEATURE_TANGENTS) != 0u) {
+    if (HAS_TANGENTS) {
         uvec4 corner = texelFetch(tangents_texels, int(hit.triangle));
         if ((corner.w & 7u) == 7u) {
             vec3 t = (1.0 - hit.barycentric.x - hit.barycentric.y) * unpack_direction(corner.x) +
@@ -98,40 +107,40 @@ vec3 bent_normal(Hit hit, vec3 front_normal, uint reference, float scale, vec4 c
 // The material at the hit. Bends the normals of the surface where it has normal textures.
 SurfaceMaterial material_at(Hit hit, vec3 direction, inout Surface surface) {
     SurfaceMaterial material = materials_at(surface.material);
-    if ((FEATURES & FEATURE_VERTEX_COLORS) != 0u) {
+    if (HAS_VERTEX_COLORS) {
         vec4 color = vertex_color_at(hit.triangle, hit.barycentric);
         material.color *= color.rgb;
         material.opacity *= color.a;
     }
-    if ((FEATURES & FEATURE_TEXTURES) != 0u && has(material, SURFACE_TEXTURED)) {
+    if (HAS_TEXTURES && has(material, SURFACE_TEXTURED)) {
         vec4 coordinates = texcoords_at(hit.triangle, hit.barycentric);
         vec4 base = texture_at(material.texture[TEXTURE_BASE_COLOR], coordinates);
         material.color *= base.rgb;
         material.opacity *= base.a;
         material.emission *= texture_at(material.texture[TEXTURE_EMISSIVE], coordinates).rgb;
-        if ((FEATURES & (FEATURE_REFLECTION | FEATURE_TRANSMISSION)) != 0u) {
+        if (HAS_REFLECTION || HAS_TRANSMISSION) {
             vec2 rough_metal = texture_at(material.texture[TEXTURE_METALLIC_ROUGHNESS], coordinates).gb;
             material.roughness *= rough_metal.x;
             material.metallic *= rough_metal.y;
         }
-        if ((FEATURES & FEATURE_TRANSMISSION) != 0u) {
+        if (HAS_TRANSMISSION) {
             material.transmission *= texture_at(material.texture[TEXTURE_TRANSMISSION], coordinates).r;
         }
-        if ((FEATURES & FEATURE_COAT) != 0u) {
+        if (HAS_COAT) {
             material.specular *= texture_at(material.texture[TEXTURE_SPECULAR], coordinates).a;
             material.specular_color *= texture_at(material.texture[TEXTURE_SPECULAR_COLOR], coordinates).rgb;
         }
-        if ((FEATURES & FEATURE_CLEARCOAT) != 0u) {
+        if (HAS_CLEARCOAT) {
             material.clearcoat *= texture_at(material.texture[TEXTURE_CLEARCOAT], coordinates).r;
             material.clearcoat_roughness *= texture_at(material.texture[TEXTURE_CLEARCOAT_ROUGHNESS], coordinates).g;
         }
-        if ((FEATURES & FEATURE_NORMAL_MAPS) != 0u) {
+        if (HAS_NORMAL_MAPS) {
             float side = surface.front ? 1.0 : -1.0;
             vec3 n = side * surface.normal;
             surface.normal =
                 side * bent_normal(hit, n, material.texture[TEXTURE_NORMAL], material.normal_scale, coordinates);
             if (dot(surface.normal, direction) >= 0.0) surface.normal = surface.geometric;
-            if ((FEATURES & FEATURE_CLEARCOAT) != 0u) {
+            if (HAS_CLEARCOAT) {
                 surface.clearcoat_normal = side * bent_normal(hit, n, material.texture[TEXTURE_CLEARCOAT_NORMAL],
                                                               material.clearcoat_normal_scale, coordinates);
                 if (dot(surface.clearcoat_normal, direction) >= 0.0) surface.clearcoat_normal = surface.geometric;
@@ -146,3 +155,5 @@ float coverage_of(SurfaceMaterial material) {
     if (has(material, SURFACE_MASK)) return material.opacity >= material.alpha_cutoff ? 1.0 : 0.0;
     return has(material, SURFACE_BLEND) ? material.opacity : 1.0;
 }
+
+#endif

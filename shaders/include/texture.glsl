@@ -1,4 +1,9 @@
 // Texture lookups: images as words in one texel buffer. Reads textures and texels.
+#ifndef TEXTURE_GLSL
+#define TEXTURE_GLSL
+
+#include "include/kernel.glsl"
+
 TEXTURES(RECORDS)
 IMAGES(TEXELS)
 
@@ -48,3 +53,5 @@ vec4 texture_at(uint reference, vec4 coordinates) {
     return mix(mix(texel_at(lookup, i.x, i.y), texel_at(lookup, i.x + 1, i.y), f.x),
                mix(texel_at(lookup, i.x, i.y + 1), texel_at(lookup, i.x + 1, i.y + 1), f.x), f.y);
 }
+
+#endif

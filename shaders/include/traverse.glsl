@@ -2,6 +2,11 @@
 // The stack holds exactly what this tree can need. Fails only by running out of `steps`, and says so.
 // Written for software Vulkan, where a load of 16 bytes from texels is one call for eight lanes, every branch is run by
 // every lane, and a store to an array is a branch for each lane.
+#ifndef TRAVERSE_GLSL
+#define TRAVERSE_GLSL
+
+#include "include/kernel.glsl"
+#include "include/scene.glsl"
 
 struct Hit {
     float t;         // distance along the direction, scene frame
@@ -232,3 +237,5 @@ uint trace(vec3 origin, vec3 direction, inout int steps, out Hit hit) {
     hit = t.hit;
     return found_by(t);
 }
+
+#endif

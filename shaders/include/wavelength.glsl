@@ -1,4 +1,9 @@
 // Dispersion: a path that meets a dispersive surface has one wavelength from then on. Pure functions.
+#ifndef WAVELENGTH_GLSL
+#define WAVELENGTH_GLSL
+
+#include "include/kernel.glsl"
+#include "include/rng.glsl"
 
 #define WAVELENGTH_DIMENSION 0xffffu  // beyond every bounce
 
@@ -19,3 +24,5 @@ vec3 wavelength_weight(float wavelength) {
 float index_at(float ior, float cauchy, float wavelength) {
     return ior + cauchy * (1.0 / (wavelength * wavelength) - 1.0 / (0.5876 * 0.5876));
 }
+
+#endif

@@ -9,23 +9,20 @@
 // in glossy scenes (and gathered, light_rays: the rest of an unfinished path). O(bounces x log triangles). Fails by
 // running out of steps: the path then goes on next round.
 #include "include/kernel.glsl"
-#include "include/rng.glsl"
-#include "include/frame.glsl"
-#include "include/sampling.glsl"
-#include "include/sum.glsl"
-#include "include/scene.glsl"
-#include "include/texture.glsl"
-#include "include/traverse.glsl"
-#include "include/surface.glsl"
 #include "include/bsdf.glsl"
-#include "include/path.glsl"
+#include "include/camera.glsl"
 #include "include/environment.glsl"
+#include "include/frame.glsl"
+#include "include/hits.glsl"
 #include "include/light.glsl"
 #include "include/light_ray.glsl"
-#include "include/bounds.glsl"
-#include "include/camera.glsl"
-#include "include/hits.glsl"
+#include "include/path.glsl"
 #include "include/pixels.glsl"
+#include "include/rng.glsl"
+#include "include/sampling.glsl"
+#include "include/sum.glsl"
+#include "include/surface.glsl"
+#include "include/traverse.glsl"
 
 SEARCHES(STORES)
 AOVS(UPDATES)
@@ -35,7 +32,7 @@ LIGHT_RAYS(UPDATES)
 #define LOBE_DIMENSIONS 4096u      // of random numbers, beyond those of bounces: where in a lobe
 #define LIGHT_DIMENSIONS 8192u     // which light is asked for, and where on it
 
-bool sees_light(uint memory) { return (FEATURES & FEATURE_SPLIT) == 0u || (memory & PATH_CAUSTIC) != 0u; }
+bool sees_light(uint memory) { return !HAS_SPLIT || (memory & PATH_CAUSTIC) != 0u; }
 
 // The weight of light that a ray meets and that could be asked for with `density`: the balance heuristic. followed: the
 // density with which rough lobes gave the ray its direction; 0: none did, and nothing else finds this light.
@@ -69,7 +66,7 @@ void main() {
         distance = hit_emission_at(pixel).footprint;
         Gathered rest = gathered_at(pixel);
         direction = rest.flux;
-        if (ASKS_FOR_LIGHTS(FEATURES)) {
+        if (EYE_PATHS_ASK) {
             followed = rest.excess.x;
             leg = rest.excess.y;
             light_ray = light_rays[pixel];
@@ -105,9 +102,9 @@ void main() {
                 emission += direction;
                 break;
             }
-            if ((FEATURES & FEATURE_ENVIRONMENT) != 0u && sees_light(memory)) {
+            if (HAS_ENVIRONMENT && sees_light(memory)) {
                 vec3 met = environment_radiance(direction);
-                if (ASKS_FOR_LIGHTS(FEATURES) && met != vec3(0.0)) {
+                if (EYE_PATHS_ASK && met != vec3(0.0)) {
                     met *= met_weight(followed, environment_density(direction));
                 }
                 emission += throughput * met;
@@ -118,16 +115,16 @@ void main() {
         leg += hit.t;
         Surface surface = surface_at(hit, direction);
         SurfaceMaterial material = material_at(hit, direction, surface);
-        if ((FEATURES & FEATURE_VOLUME) != 0u) throughput *= transmittance(memory, surface, hit.t);
+        if (HAS_VOLUME) throughput *= transmittance(memory, surface, hit.t);
         vec4 u = vec4(0.0);  // where in a lobe, and whether the surface is there
-        if ((FEATURES & (FEATURE_ROUGH | FEATURE_ALPHA)) != 0u) {
+        if (HAS_ROUGH || HAS_ALPHA) {
             u = random4(params.seed, launch.iteration, STREAM_EYE, pixel, LOBE_DIMENSIONS + depth);
         }
-        if ((FEATURES & FEATURE_ALPHA) != 0u && u.z >= coverage_of(material)) {
+        if (HAS_ALPHA && u.z >= coverage_of(material)) {
             origin = leave(surface, direction);
             continue;
         }
-        if ((FEATURES & FEATURE_AOVS) != 0u && (memory & PATH_SEEN) == 0u) {
+        if (HAS_AOVS && (memory & PATH_SEEN) == 0u) {
             memory |= PATH_SEEN;
             Aovs sum = aovs[pixel];
             add(sum.albedo, sum.albedo_low, material.color);
@@ -136,14 +133,14 @@ void main() {
             ++sum.hits;
             aovs[pixel] = sum;
         }
-        if ((FEATURES & FEATURE_UNLIT) != 0u && has(material, SURFACE_UNLIT)) {
+        if (HAS_UNLIT && has(material, SURFACE_UNLIT)) {
             // What emits no photons must not be seen by rough lobes: photons would have to bring their share of it.
             if ((memory & PATH_STRAIGHT) != 0u && sees_light(memory)) emission += throughput * material.color;
             break;
         }
         if ((surface.front || has(material, SURFACE_DOUBLE_SIDED)) && sees_light(memory)) {
             vec3 met = material.emission;
-            if (ASKS_FOR_LIGHTS(FEATURES) && met != vec3(0.0)) {
+            if (EYE_PATHS_ASK && met != vec3(0.0)) {
                 met *= met_weight(followed, met_density(material, surface, direction, leg));
             }
             emission += throughput * met;
@@ -155,7 +152,7 @@ void main() {
         vec3 wo = -direction;
         vec4 lobes = lobes_of(bsdf, surface, wo);
         vec3 rough = vec3(0.0);
-        if ((FEATURES & FEATURE_ROUGH) != 0u) {
+        if (HAS_ROUGH) {
             rough = vec3(bsdf.alpha > 0.0 ? lobes.yz : vec2(0.0), bsdf.clearcoat_alpha > 0.0 ? lobes.w : 0.0);
             vec3 shares = rough * vec3(vec2(gathered_share(bsdf.alpha)), gathered_share(bsdf.clearcoat_alpha));
             rough -= shares;
@@ -164,7 +161,7 @@ void main() {
         }
         // The probability that a rough lobe is followed.
         float rough_share = (rough.x + rough.y + rough.z) / (lobes.x + lobes.y + lobes.z + lobes.w);
-        bool asks = ASKS_FOR_LIGHTS(FEATURES) && params.light_count > 0u && rough_share > 0.0;
+        bool asks = EYE_PATHS_ASK && params.light_count > 0u && rough_share > 0.0;
         if (asks) {
             uvec4 bits = random_words(params.seed, launch.iteration, STREAM_EYE, pixel, LIGHT_DIMENSIONS + depth);
             LightSample light = sample_light(bits, u.xy, surface.position);
@@ -188,7 +185,7 @@ void main() {
             position.position = surface.position;
             weight.normal = pack_direction(surface.normal);
             uvec3 albedo = uvec3(1023u);
-            if ((FEATURES & FEATURE_GLOSS) != 0u) {
+            if (HAS_GLOSS) {
                 weight.weight = throughput * (1.0 / PI);
                 hit_surface[pixel] = HitSurface(hit.triangle, hit.barycentric, pack_direction(wo));
                 position.state = bsdf.glass > 0.0 && bsdf.alpha > 0.0 ? HIT_BOTH_SIDES : HIT_DIFFUSE;
@@ -200,10 +197,10 @@ void main() {
             position.state |= (albedo.x | albedo.y << 10u | albedo.z << 20u) << 2u;
             break;
         }
-        if ((FEATURES & (FEATURE_REFLECTION | FEATURE_TRANSMISSION)) == 0u) break;
+        if (!HAS_REFLECTION && !HAS_TRANSMISSION) break;
         float density;
         throughput *= sample_lobe(lobe, bsdf, surface, u.xy, true, direction, density);
-        if ((FEATURES & FEATURE_ROUGH) != 0u) {
+        if (HAS_ROUGH) {
             vec3 n = lobe == LOBE_CLEARCOAT ? surface.clearcoat_normal : surface.normal;
             throughput *= followed_weight(density, dot(direction, n));
             memory = leave_lobe(memory, density);
@@ -218,7 +215,7 @@ void main() {
         origin = leave(surface, direction);
     }
     // A loop of its own: software Vulkan runs all of a loop's code for every ray of it, and this one hardly shades.
-    while (ASKS_FOR_LIGHTS(FEATURES) && light_ray.distance > 0.0 && position.state != HIT_UNFINISHED) {
+    while (EYE_PATHS_ASK && light_ray.distance > 0.0 && position.state != HIT_UNFINISHED) {
         --steps;
         bool fresh = steps + 1 == int(params.step_budget);
         Hit hit;
@@ -233,11 +230,11 @@ void main() {
         ++rays;
         bool reaches = reaches_light(light_ray, found, hit);
         if (reaches) emission += light_ray.light;
-        if (reaches || (FEATURES & FEATURE_ALPHA) == 0u) break;
+        if (reaches || !HAS_ALPHA) break;
         Surface surface = surface_at(hit, light_ray.direction);
         pass_surface(light_ray, surface, hit.t, coverage_of(material_at(hit, light_ray.direction, surface)));
     }
-    if (ASKS_FOR_LIGHTS(FEATURES) && position.state == HIT_UNFINISHED) light_rays[pixel] = light_ray;
+    if (EYE_PATHS_ASK && position.state == HIT_UNFINISHED) light_rays[pixel] = light_ray;
     hit_position[pixel] = position;
     hit_weight[pixel] = weight;
     hit_emission[pixel] = HitEmission(

@@ -7,20 +7,16 @@
 // with the pixel's shading normal, both on the side they were seen from; the distance is that in space, the kernel is
 // 1 / (pi R^2), but for appm's.
 #include "include/kernel.glsl"
+#include "include/bsdf.glsl"
+#include "include/frame.glsl"
+#include "include/hits.glsl"
+#include "include/path.glsl"
+#include "include/pixels.glsl"
 #include "include/rng.glsl"
 #include "include/sampling.glsl"
-#include "include/sum.glsl"
-#include "include/frame.glsl"
-#include "include/scene.glsl"
-#include "include/texture.glsl"
-#include "include/traverse.glsl"
-#include "include/surface.glsl"
-#include "include/bsdf.glsl"
-#include "include/path.glsl"
-#include "include/grid.glsl"
 #include "include/search.glsl"
-#include "include/hits.glsl"
-#include "include/pixels.glsl"
+#include "include/sum.glsl"
+#include "include/surface.glsl"
 #include "estimators/estimator.glsl"
 
 SORTED_FLUX(RECORDS)
@@ -71,7 +67,7 @@ void main() {
     Surface surface;
     Bsdf bsdf;
     vec3 outgoing;
-    if ((FEATURES & FEATURE_GLOSS) != 0u) glossy_hit(pixel, surface, bsdf, outgoing);
+    if (HAS_GLOSS) glossy_hit(pixel, surface, bsdf, outgoing);
 
     begin(pixel);
     int steps = int(params.step_budget);
@@ -113,13 +109,13 @@ void main() {
             float squared = dot(offset, offset);
             vec3 power = abs(flux.power);
             vec3 towards = unpack_direction(flux.direction);
-            if ((FEATURES & FEATURE_SMOOTH) != 0u) {
+            if (HAS_SMOOTH) {
                 // Photons arrive per area of the true surface, the BRDF is that of the shaded one.
                 vec3 geometric = unpack_direction(photon.normal);
                 float cos_shading = dot(towards, normal);
                 power *= max(0.0, both_sides ? abs(cos_shading) : cos_shading) / max(0.01, dot(towards, geometric));
             }
-            if ((FEATURES & FEATURE_GLOSS) != 0u) {
+            if (HAS_GLOSS) {
                 uint part = (floatBitsToUint(flux.power.r) & 0x80000000u) != 0u ? PART_ALL : PART_GATHERED;
                 power *= PI * rough_bsdf(bsdf, surface, outgoing, towards, part);
             }

@@ -6,9 +6,8 @@
 // 50,000 if every bin were in use, of the 65,535 that software Vulkan runs. Fails where there is no room for so many
 // levels: begins again when there is.
 #include "include/kernel.glsl"
-#include "include/rng.glsl"
-#include "include/sampling.glsl"
 #include "include/grid.glsl"
+#include "include/sampling.glsl"
 
 #define SEGMENT_COST 2.0   // loop trips that a segment of a row costs, measured
 #define HASH_PENALTY 1.5   // comparing cells, shorter runs

@@ -7,14 +7,13 @@
 // search (flux.x: largest kept squared distance, flux.y: its index, flux.z: search radius, count: kept).
 // O(photons in the cells met + k per replacement). Fails by running out of steps: goes on next round.
 #include "include/kernel.glsl"
-#include "include/rng.glsl"
-#include "include/sampling.glsl"
-#include "include/sum.glsl"
 #include "include/frame.glsl"
-#include "include/grid.glsl"
-#include "include/search.glsl"
 #include "include/hits.glsl"
 #include "include/pixels.glsl"
+#include "include/rng.glsl"
+#include "include/sampling.glsl"
+#include "include/search.glsl"
+#include "include/sum.glsl"
 #include "estimators/estimator.glsl"
 
 SEARCHES(READS)
@@ -48,14 +47,14 @@ void main() {
         if (first) {
             cap = min(params.radius_cap,
                       max(params.radius_floor, params.footprint_cap * hit_emission_at(pixel).footprint));
-            if ((FEATURES & FEATURE_SPLIT) != 0u) {
+            if (HAS_SPLIT) {
                 // A reference does not let its photons choose their discs.
                 cap = params.footprint_cap * hit_emission_at(pixel).footprint;
                 pixels[pixel].seeded = 1u;
             }
             pixels[pixel].radius2 = cap * cap;
         }
-        if ((FEATURES & FEATURE_SPLIT) != 0u) return;
+        if (HAS_SPLIT) return;
         // A pixel that failed before will hardly find k photons nearby: it looks through its whole disc at once.
         kept = Gathered(vec3(-1.0, 0.0, first ? min(cap, grid.cell[0]) : cap), 0u, vec3(0.0), 0u);
     } else {

@@ -7,21 +7,16 @@
 // Reads the scene and the lights; writes image [P], the mean of the launch's paths, and traces. O(paths x bounces x log
 // triangles). Fails by running out of steps: goes on next round.
 #include "include/kernel.glsl"
-#include "include/rng.glsl"
-#include "include/frame.glsl"
-#include "include/sampling.glsl"
-#include "include/sum.glsl"
-#include "include/scene.glsl"
-#include "include/texture.glsl"
-#include "include/traverse.glsl"
-#include "include/surface.glsl"
 #include "include/bsdf.glsl"
-#include "include/path.glsl"
+#include "include/camera.glsl"
 #include "include/environment.glsl"
 #include "include/light.glsl"
 #include "include/light_ray.glsl"
-#include "include/bounds.glsl"
-#include "include/camera.glsl"
+#include "include/path.glsl"
+#include "include/rng.glsl"
+#include "include/sum.glsl"
+#include "include/surface.glsl"
+#include "include/traverse.glsl"
 
 TRACES(UPDATES)
 IMAGE(STORES)
@@ -41,7 +36,7 @@ float power_heuristic(float density, float other) {
 // The weight of light that a ray of the path meets, where it is drawn with `light_density` too.
 float met_weight(TraceState state, float light_density) {
     if (state.density != DELTA) return power_heuristic(state.density, light_density);
-    return (FEATURES & FEATURE_SPLIT) != 0u && (state.memory & PATH_CAUSTIC) != 0u ? 0.0 : 1.0;
+    return HAS_SPLIT && (state.memory & PATH_CAUSTIC) != 0u ? 0.0 : 1.0;
 }
 
 // What an emitter sends along the ray that met it, weighed.
@@ -123,7 +118,7 @@ void main() {
             state.radiance += state.light_ray.light;
             state.light_ray.distance = 0.0;
         } else if (found == TRACE_MISS) {
-            if ((FEATURES & FEATURE_ENVIRONMENT) != 0u) {
+            if (HAS_ENVIRONMENT) {
                 vec3 met = environment_radiance(direction);
                 if (met != vec3(0.0)) met *= met_weight(state, environment_density(direction));
                 state.radiance += state.throughput * met;
@@ -132,22 +127,22 @@ void main() {
         } else {
             Surface surface = surface_at(hit, direction);
             SurfaceMaterial material = material_at(hit, direction, surface);
-            float coverage = (FEATURES & FEATURE_ALPHA) != 0u ? coverage_of(material) : 1.0;
+            float coverage = HAS_ALPHA ? coverage_of(material) : 1.0;
             if (shadow) {
                 pass_surface(state.light_ray, surface, hit.t, coverage);
             } else {
                 ++state.memory;
                 uint bounces = state.memory & PATH_BOUNCES;
                 state.distance += hit.t;
-                if ((FEATURES & FEATURE_VOLUME) != 0u) state.throughput *= transmittance(state.memory, surface, hit.t);
+                if (HAS_VOLUME) state.throughput *= transmittance(state.memory, surface, hit.t);
                 uint dimension = FIRST_DIMENSION + 3u * bounces;
                 uvec4 bits = random_words(params.seed, path, STREAM_PATH, pixel, dimension);
                 vec4 u = random4(params.seed, path, STREAM_PATH, pixel, dimension + 1u);
                 vec4 v = random4(params.seed, path, STREAM_PATH, pixel, dimension + 2u);
                 bool alive = true;
-                if ((FEATURES & FEATURE_ALPHA) != 0u && v.z >= coverage) {
+                if (HAS_ALPHA && v.z >= coverage) {
                     // It is not there.
-                } else if ((FEATURES & FEATURE_UNLIT) != 0u && has(material, SURFACE_UNLIT)) {
+                } else if (HAS_UNLIT && has(material, SURFACE_UNLIT)) {
                     if ((state.memory & PATH_STRAIGHT) != 0u) state.radiance += state.throughput * material.color;
                     alive = false;
                 } else {

@@ -5,20 +5,16 @@
 // has stored and where (counters), paths. O(paths x bounces x log triangles). Fails by running out of steps (goes on
 // next round) or of slots (counts on without storing, reports the number needed).
 #include "include/kernel.glsl"
-#include "include/rng.glsl"
-#include "include/frame.glsl"
-#include "include/sampling.glsl"
-#include "include/sum.glsl"
-#include "include/scene.glsl"
-#include "include/texture.glsl"
-#include "include/traverse.glsl"
-#include "include/surface.glsl"
-#include "include/bsdf.glsl"
-#include "include/path.glsl"
-#include "include/environment.glsl"
 #include "include/bounds.glsl"
-#include "include/light.glsl"
+#include "include/bsdf.glsl"
 #include "include/counters.glsl"
+#include "include/frame.glsl"
+#include "include/light.glsl"
+#include "include/path.glsl"
+#include "include/rng.glsl"
+#include "include/sum.glsl"
+#include "include/surface.glsl"
+#include "include/traverse.glsl"
 
 PHOTONS(STORES)
 PHOTON_FLUX(STORES)
@@ -105,15 +101,15 @@ void main() {
         if (alive) {
             Surface surface = surface_at(hit, state.direction);
             SurfaceMaterial material = material_at(hit, state.direction, surface);
-            if ((FEATURES & FEATURE_VOLUME) != 0u) state.power *= transmittance(state.memory, surface, hit.t);
+            if (HAS_VOLUME) state.power *= transmittance(state.memory, surface, hit.t);
             vec4 u = random4(params.seed, launch.iteration, STREAM_PHOTON, path, bounces + 1u);
             float ior = index_for_path(material, STREAM_PHOTON, path, state.memory, state.power);
             Bsdf bsdf = bsdf_of(material, ior, surface.front);
-            if ((FEATURES & FEATURE_UNLIT) != 0u && has(material, SURFACE_UNLIT)) bsdf = black();
+            if (HAS_UNLIT && has(material, SURFACE_UNLIT)) bsdf = black();
             // What is black reflects no photon to any eye. Where a surface is partly there the photon counts in full:
             // it tells how much light arrives, and the eye path has asked for the surface.
             // Where light is split, the rest is left to paths.
-            bool counts = (FEATURES & FEATURE_SPLIT) == 0u || (state.memory & PATH_CAUSTIC) != 0u;
+            bool counts = !HAS_SPLIT || (state.memory & PATH_CAUSTIC) != 0u;
             if (counts && gathers_light(bsdf)) {
                 if (state.stored < params.photon_capacity) {
                     photons[slot + state.stored] = Photon(surface.position, pack_direction(surface.geometric));
@@ -121,10 +117,10 @@ void main() {
                     // Two conditions: their disjunction is a constant that the optimiser loses.
                     bool all = (state.memory & (PATH_STRAIGHT | PATH_DIRECT)) == PATH_STRAIGHT;
                     uint red = floatBitsToUint(power.r) | (all ? 0x80000000u : 0u);
-                    bool asked_for = (FEATURES & FEATURE_ROUGH) != 0u && (FEATURES & FEATURE_PUNCTUAL_LIGHTS) != 0u;
+                    bool asked_for = HAS_ROUGH && HAS_PUNCTUAL_LIGHTS;
                     if (asked_for) power.r = uintBitsToFloat(red);
-                    if ((FEATURES & FEATURE_SPLIT) != 0u) power.r = uintBitsToFloat(red);
-                    if ((FEATURES & FEATURE_SPLIT) != 0u && (state.memory & PATH_SCATTERED) == 0u) {
+                    if (HAS_SPLIT) power.r = uintBitsToFloat(red);
+                    if (HAS_SPLIT && (state.memory & PATH_SCATTERED) == 0u) {
                         power.g = uintBitsToFloat(floatBitsToUint(power.g) | 0x80000000u);
                     }
                     photon_flux[slot + state.stored] = PhotonFlux(power, pack_direction(-state.direction));
@@ -132,7 +128,7 @@ void main() {
                 ++state.stored;
             }
             bool there = true;
-            if ((FEATURES & FEATURE_ALPHA) != 0u) {
+            if (HAS_ALPHA) {
                 float coverage = coverage_of(material);
                 there = u.w < coverage;
                 u.w /= coverage;  // uniform again where the surface is there
@@ -141,7 +137,7 @@ void main() {
                 // In scenes without gloss no surface needs two numbers for its direction and a third for its lobe.
                 float inverse_probability;
                 vec4 lobes = lobes_of(bsdf, surface, -state.direction);
-                uint lobe = choose_lobe(lobes, (FEATURES & FEATURE_GLOSS) != 0u ? u.w : u.x, inverse_probability);
+                uint lobe = choose_lobe(lobes, HAS_GLOSS ? u.w : u.x, inverse_probability);
                 alive = lobe != LOBE_NONE;
                 vec3 before = state.direction;
                 float density;
@@ -150,7 +146,7 @@ void main() {
                 bool near = (state.memory & (PATH_STRAIGHT | PATH_DIRECT)) == PATH_DIRECT && hit.t < params.near_lights;
                 state.memory &= ~PATH_DIRECT;
                 if (density != DELTA) state.memory &= ~PATH_STRAIGHT;
-                if ((FEATURES & FEATURE_SPLIT) != 0u) {
+                if (HAS_SPLIT) {
                     if (density == DELTA) {
                         state.memory |= PATH_CAUSTIC;
                     } else if (near) {
@@ -161,7 +157,7 @@ void main() {
                     }
                     alive = alive && (state.memory & PATH_CAUSTIC) != 0u;
                 }
-                if ((FEATURES & FEATURE_SMOOTH) != 0u && density != DELTA) {
+                if (HAS_SMOOTH && density != DELTA) {
                     state.power *= shading_correction(surface, before, state.direction);
                 }
                 state.memory = pass_boundary(state.memory, bsdf, lobe, surface);

@@ -1,7 +1,6 @@
 #version 460
 // Exclusive scan, step 3 of 3: every block scans itself from the sum of the blocks before it. One invocation a block.
 #include "include/kernel.glsl"
-#include "include/grid.glsl"
 #include "include/counters.glsl"
 #include "include/scan.glsl"
 

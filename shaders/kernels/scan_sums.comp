@@ -2,7 +2,6 @@
 // Exclusive scan of counters[offset .. offset + count), step 1 of 3: sums of params.scan_blocks consecutive blocks, one
 // invocation a block, without barriers. O(count / scan_blocks); count < 2^16 scan_blocks.
 #include "include/kernel.glsl"
-#include "include/grid.glsl"
 #include "include/counters.glsl"
 #include "include/scan.glsl"
 

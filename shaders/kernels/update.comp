@@ -4,11 +4,11 @@
 // the histograms by radius from which the next grid is planned. O(rings x sectors).
 // A contribution that is not finite is dropped and counted in status.invalid.
 #include "include/kernel.glsl"
+#include "include/hits.glsl"
+#include "include/pixels.glsl"
 #include "include/rng.glsl"
 #include "include/sampling.glsl"
 #include "include/sum.glsl"
-#include "include/hits.glsl"
-#include "include/pixels.glsl"
 #include "estimators/estimator.glsl"
 
 FILM(STORES)

@@ -42,42 +42,54 @@ using uint = std::uint32_t;
 #define SPEC_LEVELS 8     // of the grid that there is room for
 #define SPEC_WAITS 9      // 1: lanes of the photon pass wait for the longest ray of their SIMD group
 
-// Features of a scene: a pipeline holds only what its scene needs, and buffers that only a feature reads are empty
-// without it.
-#define FEATURE_REFLECTION 0x1u        // a lobe of reflection: metal, coat or glass
-#define FEATURE_TRANSMISSION 0x2u      // light passes a surface
-#define FEATURE_SMOOTH 0x4u            // photons land where the shading normal is not the geometric one
-#define FEATURE_AOVS 0x8u              // depth, albedo and normal are asked for
-#define FEATURE_GLOSS 0x10u            // gathering weighs every photon by its direction: a coat, or a rough lobe
-#define FEATURE_ROUGH 0x20u            // a lobe of roughness above 0
-#define FEATURE_COAT 0x40u             // a dielectric coat over a diffuse base
-#define FEATURE_CLEARCOAT 0x80u
-#define FEATURE_THIN 0x100u            // thin-walled transmission
-#define FEATURE_VOLUME 0x200u          // absorption inside solids
-#define FEATURE_DISPERSION 0x400u
-#define FEATURE_TEXTURES 0x800u
-#define FEATURE_NORMAL_MAPS 0x1000u
-#define FEATURE_TANGENTS 0x2000u       // tangents of the file, for normal maps
-#define FEATURE_VERTEX_COLORS 0x4000u
-#define FEATURE_ALPHA 0x8000u          // surfaces that are partly not there
-#define FEATURE_UNLIT 0x10000u
-#define FEATURE_LENS 0x20000u          // depth of field is asked for
-#define FEATURE_AREA_LIGHTS 0x40000u
-#define FEATURE_TEXTURED_LIGHTS 0x80000u
-#define FEATURE_POINT_LIGHTS 0x100000u
-#define FEATURE_SPOT_LIGHTS 0x200000u
-#define FEATURE_DIRECTIONAL_LIGHTS 0x400000u
-#define FEATURE_ENVIRONMENT 0x800000u
-#define FEATURE_SPLIT 0x1000000u       // light is split in two: photons bring caustics and what is lit at less than
-                                       // near_lights from its lamp, as fixtures are, paths the rest: study/reference.h
+// Features of a scene or of its settings: a pipeline holds only what its scene needs, and buffers that only a feature
+// reads are empty without it. FEATURE_<NAME> is its bit, HAS_<NAME> (include/kernel.glsl) whether a kernel has it.
+//   MATERIAL(bit, NAME, words, trait)  a material on a triangle has the trait of SurfaceTraits (host/flat/surface.h)
+//   SCENE(bit, NAME, words)            host/flat/features.cpp asks the scene
+//   SETTING(bit, NAME, words)          the settings ask for it
+// words: its name for people. In the order of bits.
+// clang-format off
+#define FEATURE_TABLE(MATERIAL, SCENE, SETTING)                                                                \
+    MATERIAL(0, REFLECTION, reflection, reflects())           /* a lobe of reflection: metal, coat or glass */ \
+    MATERIAL(1, TRANSMISSION, transmission, glass)            /* light passes a surface */                     \
+    SCENE(2, SMOOTH, shading normals)            /* photons land where the shading normal is not the geometric one */ \
+    SETTING(3, AOVS, further channels)                        /* depth, albedo and normal */                   \
+    MATERIAL(4, GLOSS, directional gathering, glossy())       /* gathering weighs every photon by its direction */ \
+    MATERIAL(5, ROUGH, rough lobes, is_rough())               /* a lobe of roughness above 0 */                \
+    MATERIAL(6, COAT, coats, coat)                            /* a dielectric coat over a diffuse base */      \
+    MATERIAL(7, CLEARCOAT, clearcoats, clearcoat)                                                              \
+    MATERIAL(8, THIN, thin walls, thin)                       /* thin-walled transmission */                   \
+    MATERIAL(9, VOLUME, absorption, absorbs)                  /* inside solids */                              \
+    MATERIAL(10, DISPERSION, dispersion, disperses)                                                            \
+    MATERIAL(11, TEXTURES, textures, textured)                                                                 \
+    MATERIAL(12, NORMAL_MAPS, normal maps, normal_map)                                                         \
+    SCENE(13, TANGENTS, tangents)                             /* of the file, for normal maps */               \
+    SCENE(14, VERTEX_COLORS, vertex colours)                                                                   \
+    MATERIAL(15, ALPHA, alpha, alpha)                         /* surfaces that are partly not there */         \
+    MATERIAL(16, UNLIT, unlit surfaces, unlit)                                                                 \
+    SETTING(17, LENS, depth of field)                                                                          \
+    MATERIAL(18, AREA_LIGHTS, area lights, is_lamp())                                                          \
+    SCENE(19, TEXTURED_LIGHTS, textured lights)                                                                \
+    SCENE(20, POINT_LIGHTS, point lights)                                                                      \
+    SCENE(21, SPOT_LIGHTS, spot lights)                                                                        \
+    SCENE(22, DIRECTIONAL_LIGHTS, directional lights)                                                          \
+    SCENE(23, ENVIRONMENT, environment)                                                                        \
+    /* light is split in two: photons bring caustics and what is lit at less than near_lights from its lamp, as  \
+       fixtures are, paths the rest: include/split.glsl, host/study/reference.h */                             \
+    SETTING(24, SPLIT, caustics alone)
+// clang-format on
+#define FEATURE_BIT(bit, NAME, words) VKCPPM_CONST uint FEATURE_##NAME = 1u << bit;
+#define FEATURE_BIT_OF_MATERIAL(bit, NAME, words, trait) FEATURE_BIT(bit, NAME, words)
+FEATURE_TABLE(FEATURE_BIT_OF_MATERIAL, FEATURE_BIT, FEATURE_BIT)
+
 // Eye paths ask for lights where they may follow a rough lobe. Where light is split photons bring caustics alone, and
 // of those an eye path finds what it meets by delta lobes after it has followed a rough one.
-#define ASKS_FOR_LIGHTS(features) (((features) & FEATURE_ROUGH) != 0u && ((features) & FEATURE_SPLIT) == 0u)
+#define ASKS_FOR_LIGHTS(features) (((features) & (FEATURE_ROUGH | FEATURE_SPLIT)) == FEATURE_ROUGH)
 // Those that ask for parts of a SurfaceMaterial.
 #define FEATURES_OF_SCATTERING (FEATURE_REFLECTION | FEATURE_TRANSMISSION)
 #define FEATURES_OF_COATS (FEATURE_COAT | FEATURE_ALPHA)
 #define FEATURES_OF_LAYERS (FEATURE_CLEARCOAT | FEATURE_ALPHA | FEATURE_NORMAL_MAPS)
-#define FEATURE_PUNCTUAL_LIGHTS (FEATURE_POINT_LIGHTS | FEATURE_SPOT_LIGHTS | FEATURE_DIRECTIONAL_LIGHTS)
+#define FEATURES_OF_PUNCTUAL_LIGHTS (FEATURE_POINT_LIGHTS | FEATURE_SPOT_LIGHTS | FEATURE_DIRECTIONAL_LIGHTS)
 
 #define MAX_RINGS 4
 #define MAX_SECTORS 12
@@ -472,4 +484,9 @@ static_assert(sizeof(HitPosition) == 16 && sizeof(HitWeight) == 16 && sizeof(Hit
 static_assert(sizeof(Gathered) == 32 && sizeof(PixelState) == 48 && sizeof(Film) == 24 && sizeof(LightRay) == 44);
 static_assert(sizeof(Launch) <= 128);
 }  // namespace vkcppm::gpu
+namespace vkcppm {
+#define USE_FEATURE(bit, NAME, words) using gpu::FEATURE_##NAME;
+#define USE_FEATURE_OF_MATERIAL(bit, NAME, words, trait) USE_FEATURE(bit, NAME, words)
+FEATURE_TABLE(USE_FEATURE_OF_MATERIAL, USE_FEATURE, USE_FEATURE)
+}  // namespace vkcppm
 #endif

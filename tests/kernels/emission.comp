@@ -21,6 +21,6 @@ void main() {
     EmitOutput start;
     start.kind = emit(inputs[i].bits, inputs[i].v, start.origin, start.direction, start.power);
     start.radiance = vec3(0.0);
-    if ((FEATURES & FEATURE_ENVIRONMENT) != 0u) start.radiance = environment_radiance(-start.direction);
+    if (HAS_ENVIRONMENT) start.radiance = environment_radiance(-start.direction);
     outputs[i] = start;
 }
