@@ -3,6 +3,7 @@
 #define HITS_GLSL
 
 #include "include/kernel.glsl"
+#include "include/colour.glsl"
 
 HIT_POSITION(STORES)
 HIT_WEIGHT(STORES)
@@ -22,8 +23,5 @@ vec3 hit_albedo(uint pixel) {
     uint packed = hit_position_at(pixel).state >> 2u;
     return vec3(uvec3(packed, packed >> 10u, packed >> 20u) & 1023u) * (1.0 / 1023.0);
 }
-
-// Relative luminance, Rec. 709.
-float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }
 
 #endif

@@ -150,17 +150,10 @@ void main() {
 
         // Gathering takes part in the choice of a lobe, in place of the diffuse one.
         vec3 wo = -direction;
-        vec4 lobes = lobes_of(bsdf, surface, wo);
-        vec3 rough = vec3(0.0);
-        if (HAS_ROUGH) {
-            rough = vec3(bsdf.alpha > 0.0 ? lobes.yz : vec2(0.0), bsdf.clearcoat_alpha > 0.0 ? lobes.w : 0.0);
-            vec3 shares = rough * vec3(vec2(gathered_share(bsdf.alpha)), gathered_share(bsdf.clearcoat_alpha));
-            rough -= shares;
-            lobes.x += shares.x + shares.y + shares.z;
-            lobes.yzw -= shares;
-        }
+        LobeWeights lobes = lobes_of(bsdf, surface, wo);
+        LobeWeights rough = share_with_photons(bsdf, lobes);
         // The probability that a rough lobe is followed.
-        float rough_share = (rough.x + rough.y + rough.z) / (lobes.x + lobes.y + lobes.z + lobes.w);
+        float rough_share = total(rough) / total(lobes);
         bool asks = EYE_PATHS_ASK && params.light_count > 0u && rough_share > 0.0;
         if (asks) {
             uvec4 bits = random_words(params.seed, launch.iteration, STREAM_EYE, pixel, LIGHT_DIMENSIONS + depth);
@@ -171,7 +164,7 @@ void main() {
             // that are partly there, of which each costs a path a bounce: where it has too few left that share is
             // lost.)
             if (light.density > 0.0 && (memory & PATH_BOUNCES) < params.max_depth) {
-                float other = rough_share * scatter_density(bsdf, surface, vec4(0.0, rough), wo, light.direction);
+                float other = rough_share * scatter_density(bsdf, surface, rough, wo, light.direction);
                 factor *= light.density / (light.density + other);
             }
             take_one(light_ray, ray_to(light, throughput * factor, surface), u.w);
@@ -188,7 +181,7 @@ void main() {
             if (HAS_GLOSS) {
                 weight.weight = throughput * (1.0 / PI);
                 hit_surface[pixel] = HitSurface(hit.triangle, hit.barycentric, pack_direction(wo));
-                position.state = bsdf.glass > 0.0 && bsdf.alpha > 0.0 ? HIT_BOTH_SIDES : HIT_DIFFUSE;
+                position.state = HIT_DIFFUSE | gathering_sides(bsdf);
             } else {
                 weight.weight = throughput * bsdf.diffuse * (1.0 / PI);
                 albedo = uvec3(clamp(bsdf.diffuse, 0.0, 1.0) * 1023.0 + 0.5);
@@ -201,13 +194,12 @@ void main() {
         float density;
         throughput *= sample_lobe(lobe, bsdf, surface, u.xy, true, direction, density);
         if (HAS_ROUGH) {
-            vec3 n = lobe == LOBE_CLEARCOAT ? surface.clearcoat_normal : surface.normal;
-            throughput *= followed_weight(density, dot(direction, n));
+            throughput *= followed_weight(density, dot(direction, normal_of(lobe, surface)));
             memory = leave_lobe(memory, density);
             // A clearcoat's light from below the horizon of its base is not asked for: rough_bsdf leaves it out.
             float side = dot(direction, surface.normal) * dot(direction, surface.geometric);
             bool met_alone = !asks || density == DELTA || side <= 0.0;
-            followed = met_alone ? 0.0 : rough_share * scatter_density(bsdf, surface, vec4(0.0, rough), wo, direction);
+            followed = met_alone ? 0.0 : rough_share * scatter_density(bsdf, surface, rough, wo, direction);
             leg = 0.0;
         }
         if (all(lessThanEqual(throughput, vec3(0.0)))) break;

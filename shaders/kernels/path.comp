@@ -48,7 +48,7 @@ vec3 met_emission(TraceState state, Surface surface, SurfaceMaterial material) {
 }
 
 // Asks for a point of the lights, weighed against meeting it.
-void ask_for_light(inout TraceState state, Bsdf bsdf, Surface surface, vec4 lobes, uvec4 bits, vec2 v) {
+void ask_for_light(inout TraceState state, Bsdf bsdf, Surface surface, LobeWeights lobes, uvec4 bits, vec2 v) {
     vec3 wo = -state.direction;
     LightSample light = sample_light(bits, v, surface.position);
     vec3 factor = light.radiance * rough_bsdf(bsdf, surface, wo, light.direction, PART_ALL);
@@ -64,7 +64,7 @@ void ask_for_light(inout TraceState state, Bsdf bsdf, Surface surface, vec4 lobe
 }
 
 // Scatters the path: sets its direction, its density and its throughput; false where it ends.
-bool scatter(inout TraceState state, Bsdf bsdf, Surface surface, vec4 lobes, vec4 u) {
+bool scatter(inout TraceState state, Bsdf bsdf, Surface surface, LobeWeights lobes, vec4 u) {
     float inverse_probability;
     uint lobe = choose_lobe(lobes, u.w, inverse_probability);
     if (lobe == LOBE_NONE) return false;
@@ -150,9 +150,9 @@ void main() {
                     float ior = index_for_path(material, STREAM_PATH, pixel + state.done * pixel_count(), state.memory,
                                                state.throughput);
                     Bsdf bsdf = bsdf_of(material, ior, surface.front);
-                    vec4 lobes = lobes_of(bsdf, surface, -direction);
+                    LobeWeights lobes = lobes_of(bsdf, surface, -direction);
                     // Lamps seen by way of weak lobes must not be missed.
-                    if ((state.memory & PATH_STRAIGHT) != 0u) lobes = sqrt(lobes);
+                    if ((state.memory & PATH_STRAIGHT) != 0u) lobes = evened(lobes);
                     if (params.light_count > 0u && gathers_light(bsdf)) {
                         ask_for_light(state, bsdf, surface, lobes, bits, v.xy);
                     }

@@ -136,7 +136,7 @@ void main() {
             if (there) {
                 // In scenes without gloss no surface needs two numbers for its direction and a third for its lobe.
                 float inverse_probability;
-                vec4 lobes = lobes_of(bsdf, surface, -state.direction);
+                LobeWeights lobes = lobes_of(bsdf, surface, -state.direction);
                 uint lobe = choose_lobe(lobes, HAS_GLOSS ? u.w : u.x, inverse_probability);
                 alive = lobe != LOBE_NONE;
                 vec3 before = state.direction;

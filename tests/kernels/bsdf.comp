@@ -33,8 +33,7 @@ void main() {
         result.direction = -view.outgoing;
         result.weight = sample_lobe(result.lobe, bsdf, surface, inputs[i].u.xy, view.radiance != 0u, result.direction,
                                     result.density);
-        vec3 n = result.lobe == LOBE_CLEARCOAT ? surface.clearcoat_normal : surface.normal;
-        result.followed = followed_weight(result.density, dot(result.direction, n));
+        result.followed = followed_weight(result.density, dot(result.direction, normal_of(result.lobe, surface)));
     }
     result.value = rough_bsdf(bsdf, surface, view.outgoing, result.direction, PART_ALL);
     result.gathered = rough_bsdf(bsdf, surface, view.outgoing, result.direction, PART_GATHERED);

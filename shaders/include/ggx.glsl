@@ -1,0 +1,139 @@
+// Lobes of microfacets: the distribution GGX (Trowbridge-Reitz; Walter et al. 2007) with Smith's height-correlated
+// masking (Heitz 2014), and one facet of a lobe as it is sampled. Pure functions.
+#ifndef GGX_GLSL
+#define GGX_GLSL
+
+#include "include/kernel.glsl"
+#include "include/frame.glsl"
+#include "include/sampling.glsl"
+#include "include/surface.glsl"
+
+// alpha = roughness^2. A lobe narrower than the rounding of directions is a delta: its density would leave the range of
+// floats.
+float alpha_of(float roughness) { return roughness < 3e-4 ? 0.0 : roughness * roughness; }
+
+// The density, 1/sr, of a direction that only a delta lobe gives.
+const float DELTA = 3.0e38;
+// The width of lobes that are not made of facets: photons are gathered on all of their light.
+const float WIDE = 3.0e38;
+
+bool is_rough(float alpha) { return HAS_ROUGH && alpha > 0.0; }
+
+// Distribution of normals. sin^2 from the cross product: 1 - cos^2 would cancel where the lobe is narrow.
+float ggx(float alpha, vec3 n, vec3 h) {
+    vec3 s = cross(n, h);
+    float c = dot(n, h);
+    float e = dot(s, s) / alpha + c * c * alpha;
+    return 1.0 / (PI * e * e);
+}
+
+// Smith's Lambda of a direction with that cosine to the normal.
+float smith_lambda(float alpha, float cosine) {
+    float cos2 = max(cosine * cosine, 1e-12);
+    return 0.5 * (sqrt(1.0 + alpha * alpha * max(0.0, 1.0 - cos2) / cos2) - 1.0);
+}
+
+float smith_g1(float alpha, float cosine) { return 1.0 / (1.0 + smith_lambda(alpha, cosine)); }
+
+// G2 / G1(wo): what the masking of wi leaves of a direction sampled by visible normals.
+float smith_masking(float alpha, float wo_n, float wi_n) {
+    float lambda = smith_lambda(alpha, wo_n);
+    return (1.0 + lambda) / (1.0 + lambda + smith_lambda(alpha, wi_n));
+}
+
+// A microfacet normal seen from wo, in proportion to its visible area (Dupuy and Benyoub 2023), about +z.
+vec3 sample_visible_normal(float alpha, vec3 wo, vec2 u) {
+    vec3 stretched = normalize(vec3(alpha * wo.xy, wo.z));
+    float phi = 2.0 * PI * u.x;
+    float z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z;
+    float sin_theta = sqrt(clamp(1.0 - z * z, 0.0, 1.0));
+    vec3 c = vec3(sin_theta * cos(phi), sin_theta * sin(phi), z) + stretched;
+    return normalize(vec3(alpha * c.xy, max(c.z, 1e-7)));
+}
+
+// Density of `reflect` at a visible normal: of wi, per solid angle.
+float reflection_pdf(float alpha, vec3 n, vec3 wo, vec3 h) {
+    float cosine = dot(n, wo);
+    return ggx(alpha, n, h) * smith_g1(alpha, cosine) / (4.0 * cosine);
+}
+
+// The same of refraction at h; eta = index on the side of wo / index beyond, wi_h = |wi . h|: Walter et al. 2007,
+// Eq. (17).
+float refraction_pdf(float alpha, vec3 n, float wo_n, vec3 h, float eta, float wo_h, float wi_h) {
+    float d = eta * wo_h - wi_h;
+    return ggx(alpha, n, h) * smith_g1(alpha, wo_n) * wo_h / wo_n * wi_h / (d * d);
+}
+
+// ---- facets ----
+
+// A facet that scatters: of a lobe of width `alpha` about the normal n, as wo sees it.
+struct Facet {
+    vec3 n;
+    float alpha;
+    vec3 h;      // the facet's normal; n where the lobe is a delta
+    float wo_n;  // cosines, at most 1
+    float wo_h;
+    bool rough;  // drawn by visible normals, else h = n
+};
+
+Facet smooth_facet(vec3 n, vec3 wo) {
+    float cosine = min(1.0, dot(wo, n));
+    return Facet(n, 0.0, n, cosine, cosine, false);
+}
+
+// u: two numbers in [0, 1).
+Facet sample_facet(float alpha, vec3 n, vec3 wo, vec2 u) {
+    Facet facet = smooth_facet(n, wo);
+    facet.alpha = alpha;
+    facet.rough = is_rough(alpha) && alpha != WIDE;
+    if (facet.rough) {
+        vec3 t, s;
+        tangents(n, t, s);
+        vec3 local = sample_visible_normal(alpha, vec3(dot(wo, t), dot(wo, s), dot(wo, n)), u);
+        facet.h = normalize(local.x * t + local.y * s + local.z * n);
+        facet.wo_h = min(1.0, dot(wo, facet.h));
+    }
+    return facet;
+}
+
+// Mirror direction, on the outer side of the geometric surface whatever the shading normal says.
+vec3 mirror_direction(vec3 direction, vec3 normal, vec3 geometric) {
+    vec3 r = reflect(direction, normal);
+    return normalize(dot(r, geometric) > 0.0 ? r : reflect(direction, geometric));
+}
+
+// Turns `direction`, towards the surface, to where the facet reflects it; sets its density. Returns the masking
+// G2 / G1, 0 where the direction is lost below the surface.
+float reflect_at(Facet facet, Surface surface, inout vec3 direction, inout float density) {
+    float masking = 1.0;
+    if (facet.rough) {
+        vec3 wo = -direction;
+        direction = reflect(direction, facet.h);
+        float wi_n = dot(direction, facet.n);
+        bool lost = wi_n <= 0.0 || dot(direction, surface.geometric) <= 0.0;
+        if (!lost) density = reflection_pdf(facet.alpha, facet.n, wo, facet.h);
+        masking = lost ? 0.0 : smith_masking(facet.alpha, facet.wo_n, wi_n);
+    } else {
+        direction = mirror_direction(direction, facet.n, surface.geometric);
+    }
+    return masking;
+}
+
+// ---- pairs of directions ----
+
+// Two directions at a surface, unit, away from it, as lobes see them.
+struct Pair {
+    vec3 wo;
+    vec3 wi;
+    vec3 h;         // half vector
+    float wo_n;     // cosines to the shading normal
+    float wi_n;
+    bool reflects;  // wi lies on the geometric side of wo
+};
+
+Pair pair_of(Surface surface, vec3 wo, vec3 wi) {
+    return Pair(wo, wi, normalize(wo + wi), dot(wo, surface.normal), dot(wi, surface.normal),
+                dot(wi, surface.geometric) > 0.0);
+}
+
+#endif

@@ -1,0 +1,88 @@
+// The lobe of transmission through glass: refracted at a microfacet, or through a thin wall, which mirrors the lobe of
+// reflection to the other side.
+#ifndef LOBES_TRANSMISSION_GLSL
+#define LOBES_TRANSMISSION_GLSL
+
+uint transmission_gathers(Bsdf b) { return is_rough(b.alpha) && b.glass > 0.0 ? HIT_BOTH_SIDES : HIT_NONE; }
+
+float transmission_width(Bsdf b) { return b.alpha; }
+
+vec3 transmission_normal(Surface surface) { return surface.normal; }
+
+// The facets of rough glass turn from n to wo: some transmit where n would reflect all.
+float transmission_weight(Bsdf b, Surface surface, vec3 wo) {
+    float transmittance = facet_transmittance(b, min(1.0, dot(surface.normal, wo)));
+    if (HAS_ROUGH) transmittance = mix(transmittance, facet_transmittance(b, 1.0), b.alpha);
+    return largest(b.transmission) * transmittance * below_clearcoat(b, coat_cosine(surface, wo));
+}
+
+vec3 transmission_sample(Bsdf b, Surface surface, Facet facet, vec2 u, bool radiance, inout vec3 direction,
+                         inout float density) {
+    vec3 wo = -direction;
+    vec3 weight = b.transmission * below_clearcoat(b, facet.wo_n);
+    if (b.thin) {
+        weight *= facet_transmittance(b, facet.wo_h);
+        if (facet.rough) {
+            vec3 mirrored = reflect(direction, facet.h);
+            float wi_n = dot(mirrored, facet.n);
+            direction = normalize(mirrored - 2.0 * wi_n * facet.n);
+            if (wi_n <= 0.0 || dot(direction, surface.geometric) >= 0.0) return vec3(0.0);
+            density = reflection_pdf(facet.alpha, facet.n, wo, facet.h);
+            weight *= smith_masking(facet.alpha, facet.wo_n, wi_n);
+        }
+        return weight;
+    }
+    if (b.eta == 1.0) facet = smooth_facet(facet.n, wo);  // no facet bends it
+    float cosine_t;
+    float reflectance = fresnel_dielectric(facet.wo_h, b.eta, cosine_t);
+    if (cosine_t == 0.0) return vec3(0.0);  // total internal reflection at this facet
+    weight *= (1.0 - reflectance) * (radiance ? b.eta * b.eta : 1.0);
+    vec3 refracted = normalize(b.eta * direction + (b.eta * facet.wo_h - cosine_t) * facet.h);
+    if (facet.rough) {
+        direction = refracted;
+        float wi_n = -dot(direction, facet.n);
+        if (wi_n <= 0.0 || dot(direction, surface.geometric) >= 0.0) return vec3(0.0);
+        density = refraction_pdf(facet.alpha, facet.n, facet.wo_n, facet.h, b.eta, facet.wo_h, cosine_t);
+        return weight * smith_masking(facet.alpha, facet.wo_n, wi_n);
+    }
+    // Shading normals can bend a refracted ray back to its own side: it then goes on along the surface's far side.
+    if (dot(refracted, surface.geometric) < 0.0) direction = refracted;
+    return weight;
+}
+
+// The normal of the facet that sends one direction of the pair to the other, on the side of wo.
+vec3 transmission_half(Bsdf b, Surface surface, Pair pair) {
+    vec3 mirrored = pair.wi - 2.0 * pair.wi_n * surface.normal;
+    vec3 h = normalize(b.thin ? pair.wo + mirrored : b.eta * pair.wo + pair.wi);
+    return !b.thin && dot(h, surface.normal) < 0.0 ? -h : h;
+}
+
+float transmission_density(Bsdf b, Surface surface, Pair pair, float weight) {
+    float density = 0.0;
+    if (is_rough(b.alpha) && !pair.reflects && pair.wi_n < 0.0) {
+        vec3 h = transmission_half(b, surface, pair);
+        float wo_h = dot(pair.wo, h);
+        float wi_h = dot(pair.wi, h);
+        if (b.thin) {
+            density = weight * reflection_pdf(b.alpha, surface.normal, pair.wo, h);
+        } else if (b.eta != 1.0 && wo_h > 0.0 && wi_h < 0.0) {
+            density = weight * refraction_pdf(b.alpha, surface.normal, pair.wo_n, h, b.eta, wo_h, -wi_h);
+        }
+    }
+    return density;
+}
+
+vec3 transmission_evaluate(Bsdf b, Surface surface, Pair pair, uint part) {
+    float density = transmission_density(b, surface, pair, 1.0);
+    vec3 value = vec3(0.0);
+    if (density != 0.0 && b.glass > 0.0) {
+        vec3 tint = b.transmission * below_clearcoat(b, min(1.0, pair.wo_n));
+        float wo_h = min(1.0, dot(pair.wo, transmission_half(b, surface, pair)));
+        // Radiance changes by the squared ratio of indices across the surface of a solid.
+        float lobe = (b.thin ? 1.0 : b.eta * b.eta) * rough_lobe(part, b.alpha, density, pair.wo_n, pair.wi_n);
+        value = tint * (facet_transmittance(b, wo_h) * lobe);
+    }
+    return value;
+}
+
+#endif
