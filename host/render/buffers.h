@@ -41,7 +41,6 @@ enum class Entries {
     levels,
     where_aovs,    // one, where the settings ask for further channels
     where_glossy,  // one, in glossy scenes
-    where_asking,  // one, where eye paths ask for lights
     where_traced,  // one, in the path tracer
 };
 
@@ -74,7 +73,6 @@ struct Counts {
     std::uint64_t levels = 0;  // a photon slot
     bool aovs = false;
     bool glossy = false;
-    bool asking = false;
     bool traced = false;
 };
 

@@ -26,6 +26,8 @@
 // Which of the two there are, and how many rows, the estimator's row of shared/estimators.h says; where a radius begins
 // estimators/kept.glsl clears them by it.
 
+#include "include/split.glsl"
+
 struct Accepted {
     vec2 v;        // offset in the unit disc
     float q;       // |offset|^2 / R^2
@@ -68,16 +70,9 @@ void flush(uint pixel) {}
 #error "HOOK_UPDATE is missing: an estimator is a rule of the radius"
 #endif
 
-const float FIRST_NARROWER = 4.0;  // than the discs of other photons are those of photons at their first rough surface
-
 // What a photon within R counts for in the sum: the estimator's kernel, but where light is split.
-// first: the photon has met its first surface that is not smooth; what comes after that is less sharp by far.
+// first: the photon has met its first surface that is not smooth.
 float photon_weight(float q, bool first) {
-    if ((FEATURES & FEATURE_SPLIT) != 0u) {
-        // Twice the estimate of a disc of half the area less that of the whole: the bias in R^2 cancels (Richardson
-        // 1911).
-        float scale = first ? FIRST_NARROWER * FIRST_NARROWER : 1.0;
-        return q * scale < 0.5 ? 3.0 * scale : q * scale < 1.0 ? -scale : 0.0;
-    }
+    if (HAS_SPLIT) return split_weight(q, first);
     return kernel_weight(q);
 }

@@ -1,6 +1,7 @@
 // How a surface scatters (BSDF): glTF 2.0, appendix B, and the extensions for specular, transmission, volume, ior,
-// clearcoat. Pure functions. A BSDF is a sum of lobes, a row of LOBES and a file in include/lobes each, over which light
-// paths, eye paths and the path tracer go. A lobe of width 0 is a delta: paths follow it and nothing is gathered on it.
+// clearcoat. Pure functions. A BSDF is a sum of lobes, a row of LOBES and a file in include/lobes each, over which
+// light paths, eye paths and the path tracer go. A lobe of width 0 is a delta: paths follow it and nothing is gathered
+// on it.
 // What lies below a coat is weakened by 1 - F(wo . h) with the half vector of the pair of directions, so that light
 // paths and eye paths see the same surface.
 #ifndef BSDF_GLSL

@@ -25,7 +25,9 @@ vec3 environment_radiance(vec3 direction) {
 }
 
 // About the mean of entry_area over the directions of a pixel.
-float environment_area(uint pixel) { return uintBitsToFloat(texelFetch(environment_alias_texels, int(2u * pixel + 1u)).x); }
+float environment_area(uint pixel) {
+    return uintBitsToFloat(texelFetch(environment_alias_texels, int(2u * pixel + 1u)).x);
+}
 
 // A direction away from the scene: a pixel in proportion to the mean channel of its flux into the scene, then uniform
 // in its solid angle. Returns radiance over the density, for a flux of 1 of the whole map: the colour of the pixel

@@ -16,11 +16,18 @@ HIT_EMISSION(RECORDS)
 HIT_SURFACE(RECORDS)
 GATHERED(RECORDS)
 
+// HitPosition::state. kind: HIT_*; albedo: 10 bits a channel.
+uint hit_state(uint kind, uvec3 albedo) { return kind | (albedo.x | albedo.y << 10u | albedo.z << 20u) << HIT_BITS; }
+
+uint hit_kind(HitPosition hit) { return hit.state & HIT_MASK; }
+
 // True where the pixel has a surface to gather photons on.
 bool gathers(HitPosition hit) { return (hit.state & HIT_DIFFUSE) != 0u; }
 
+bool gathers_both_sides(HitPosition hit) { return hit_kind(hit) == HIT_BOTH_SIDES; }
+
 vec3 hit_albedo(uint pixel) {
-    uint packed = hit_position_at(pixel).state >> 2u;
+    uint packed = hit_position_at(pixel).state >> HIT_BITS;
     return vec3(uvec3(packed, packed >> 10u, packed >> 20u) & 1023u) * (1.0 / 1023.0);
 }
 

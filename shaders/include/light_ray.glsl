@@ -13,11 +13,11 @@
 
 LightRay no_light_ray() { return LightRay(vec3(0.0), 0.0, vec3(0.0), NO_TRIANGLE, vec3(0.0)); }
 
-// What the solid that the ray goes through lets pass. memory: of the path that asks, at the surface.
-vec3 transmittance_to(LightSample light, uint memory, Bsdf bsdf, Surface surface) {
+// What the solid that the ray goes through lets pass. flags: of the path that asks, at the surface.
+vec3 transmittance_to(LightSample light, uint flags, Bsdf bsdf, Surface surface) {
     if (!HAS_VOLUME) return vec3(1.0);
     bool through = dot(light.direction, surface.geometric) < 0.0;
-    uint medium = pass_boundary(memory, bsdf, through ? LOBE_TRANSMISSION : LOBE_NONE, surface) >> PATH_MEDIUM_SHIFT;
+    uint medium = pass_boundary(flags, bsdf, through ? LOBE_TRANSMISSION : LOBE_NONE, surface) >> PATH_MEDIUM_SHIFT;
     return medium == PATH_NO_MEDIUM ? vec3(1.0) : exp(-light.distance * absorption_of(medium));
 }
 

@@ -12,9 +12,9 @@
 #define PATH_OUTSIDE (PATH_NO_MEDIUM << PATH_MEDIUM_SHIFT)
 
 // What the solid that the path is in lets through over `distance`. A boundary that is met from inside names its own
-// solid: the eye may stand in one, and after nested solids the memory is of the inner one.
-vec3 transmittance(uint memory, Surface surface, float distance) {
-    uint medium = memory >> PATH_MEDIUM_SHIFT;
+// solid: the eye may stand in one, and after nested solids the flags are of the inner one.
+vec3 transmittance(uint flags, Surface surface, float distance) {
+    uint medium = flags >> PATH_MEDIUM_SHIFT;
     if (!surface.front) {
         SurfaceMaterial material = materials_at(surface.material);
         if (material.transmission > 0.0 && !has(material, SURFACE_THIN)) medium = surface.material;
@@ -22,25 +22,25 @@ vec3 transmittance(uint memory, Surface surface, float distance) {
     return medium == PATH_NO_MEDIUM ? vec3(1.0) : exp(-distance * absorption_of(medium));
 }
 
-// The memory after a lobe was followed: through the boundary of a solid lies its inside, or the outside.
-uint pass_boundary(uint memory, Bsdf bsdf, uint lobe, Surface surface) {
-    if (!HAS_VOLUME || lobe != LOBE_TRANSMISSION || bsdf.thin) return memory;
+// The flags after a lobe was followed: through the boundary of a solid lies its inside, or the outside.
+uint pass_boundary(uint flags, Bsdf bsdf, uint lobe, Surface surface) {
+    if (!HAS_VOLUME || lobe != LOBE_TRANSMISSION || bsdf.thin) return flags;
     uint medium = surface.front ? surface.material : PATH_NO_MEDIUM;
-    return (memory & ((1u << PATH_MEDIUM_SHIFT) - 1u)) | medium << PATH_MEDIUM_SHIFT;
+    return (flags & ((1u << PATH_MEDIUM_SHIFT) - 1u)) | medium << PATH_MEDIUM_SHIFT;
 }
 
-// The memory of an eye path after a lobe of that density (DELTA or not) was followed.
-uint leave_lobe(uint memory, float density) {
-    if (density != DELTA) return memory & ~(PATH_STRAIGHT | PATH_CAUSTIC);
-    return (memory & PATH_STRAIGHT) != 0u ? memory : memory | PATH_CAUSTIC;
+// The flags of an eye path after a lobe of that density (DELTA or not) was followed.
+uint leave_lobe(uint flags, float density) {
+    if (density != DELTA) return flags & ~(PATH_STRAIGHT | PATH_CAUSTIC);
+    return (flags & PATH_STRAIGHT) != 0u ? flags : flags | PATH_CAUSTIC;
 }
 
 // The index of refraction that the path meets. At its first dispersive surface it is given its wavelength.
-float index_for_path(SurfaceMaterial material, uint stream, uint path, inout uint memory, inout vec3 throughput) {
+float index_for_path(SurfaceMaterial material, uint stream, uint path, inout uint flags, inout vec3 throughput) {
     if (!HAS_DISPERSION || material.cauchy == 0.0) return material.ior;
     float wavelength = wavelength_of(stream, path);
-    if ((memory & PATH_DISPERSED) == 0u) throughput *= wavelength_weight(wavelength);
-    memory |= PATH_DISPERSED;
+    if ((flags & PATH_DISPERSED) == 0u) throughput *= wavelength_weight(wavelength);
+    flags |= PATH_DISPERSED;
     return index_at(material.ior, material.cauchy, wavelength);
 }
 

@@ -23,7 +23,8 @@ bool has(SurfaceMaterial material, uint flag) { return (material.flags & flag) !
 vec4 texcoords_at(uint triangle, vec2 barycentric) {
     int texel = int(triangle) * 3;
     return (1.0 - barycentric.x - barycentric.y) * texelFetch(texcoords_texels, texel) +
-           barycentric.x * texelFetch(texcoords_texels, texel + 1) + barycentric.y * texelFetch(texcoords_texels, texel + 2);
+           barycentric.x * texelFetch(texcoords_texels, texel + 1) +
+           barycentric.y * texelFetch(texcoords_texels, texel + 2);
 }
 
 vec4 vertex_color_at(uint triangle, vec2 barycentric) {

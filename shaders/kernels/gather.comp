@@ -11,6 +11,7 @@
 #include "include/frame.glsl"
 #include "include/hits.glsl"
 #include "include/path.glsl"
+#include "include/photon_flux.glsl"
 #include "include/pixels.glsl"
 #include "include/rng.glsl"
 #include "include/sampling.glsl"
@@ -21,22 +22,115 @@
 
 SORTED_FLUX(RECORDS)
 
-// The surface that the eye path ended on, as it met it.
-void glossy_hit(uint pixel, out Surface surface, out Bsdf bsdf, out vec3 outgoing) {
-    HitSurface record = hit_surface_at(pixel);
-    outgoing = unpack_direction(record.outgoing);
+// By which what arrives is divided, at least: photons at grazing angles would count for any number of others.
+#define LEAST_COSINE 0.01
+
+// A pixel that gathers.
+struct Receiver {
+    uint pixel;
+    vec3 position;
+    vec3 normal;
+    bool both_sides;
+    float radius2;
+    float inverse_radius;
+    vec3 tangent;      // over R: offsets by them are those in the unit disc
+    vec3 bitangent;
+    float reach2;      // squared distance up to which photons are looked at
+    // In glossy scenes the surface that the eye path ended on, as it met it.
+    Surface surface;
+    Bsdf bsdf;
+    vec3 outgoing;
+};
+
+// Makes the surface of the hit again.
+void remake_surface(inout Receiver r) {
+    HitSurface record = hit_surface_at(r.pixel);
+    r.outgoing = unpack_direction(record.outgoing);
     Hit hit = Hit(0.0, record.triangle, record.barycentric);
-    surface = surface_at(hit, -outgoing);
-    SurfaceMaterial material = material_at(hit, -outgoing, surface);
-    uint memory = PATH_OUTSIDE;
+    r.surface = surface_at(hit, -r.outgoing);
+    SurfaceMaterial material = material_at(hit, -r.outgoing, r.surface);
+    uint flags = PATH_OUTSIDE;
     vec3 weight = vec3(1.0);
-    bsdf = bsdf_of(material, index_for_path(material, STREAM_EYE, pixel, memory, weight), surface.front);
+    float ior = index_for_path(material, STREAM_EYE, r.pixel, flags, weight);
+    r.bsdf = bsdf_of(material, ior, r.surface.front);
+}
+
+Receiver receiver_of(uint pixel, HitPosition hit) {
+    Receiver r;
+    r.pixel = pixel;
+    r.position = hit.position;
+    r.normal = unpack_direction(hit_weight_at(pixel).normal);
+    r.both_sides = gathers_both_sides(hit);
+    r.radius2 = pixels_at(pixel).radius2;
+    r.inverse_radius = inversesqrt(r.radius2);
+    tangents(r.normal, r.tangent, r.bitangent);
+    r.tangent *= r.inverse_radius;
+    r.bitangent *= r.inverse_radius;
+    if (HAS_GLOSS) remake_surface(r);
+    return r;
+}
+
+// Weighs an accepted photon: adds it to the sum and to what the estimator keeps.
+void weigh(Receiver r, uint index, inout Gathered sum) {
+    Photon photon = sorted_at(index);
+    PhotonFlux flux = sorted_flux_at(index);
+    vec3 offset = photon.position - r.position;
+    float squared = dot(offset, offset);
+    vec3 power = power_of(flux);
+    vec3 towards = unpack_direction(flux.direction);
+    if (HAS_SMOOTH) {
+        // Photons arrive per area of the true surface, the BRDF is that of the shaded one.
+        vec3 geometric = unpack_direction(photon.normal);
+        float cos_shading = dot(towards, r.normal);
+        power *= max(0.0, r.both_sides ? abs(cos_shading) : cos_shading) / max(LEAST_COSINE, dot(towards, geometric));
+    }
+    if (HAS_GLOSS) {
+        power *= PI * rough_bsdf(r.bsdf, r.surface, r.outgoing, towards, brings_all(flux) ? PART_ALL : PART_GATHERED);
+    }
+    bool inside = squared < r.radius2;
+    float q = squared * r.inverse_radius * r.inverse_radius;
+    add_corrected(sum.flux, sum.excess, inside ? power * photon_weight(q, is_first_rough(flux)) : vec3(0.0));
+    sum.count += inside ? 1u : 0u;
+    record(r.pixel, Accepted(vec2(dot(offset, r.tangent), dot(offset, r.bitangent)), q, power, index), inside);
 }
 
 // Runs of at most 32 photons that wait to be weighed, those accepted marked in a word. The test of the distance takes
 // all lanes through all photons of the cells, of which it accepts a third; weighing them apart takes each lane through
 // its own alone. That is most of the work where photons are weighed by a BSDF.
 #define QUEUE 16u
+uvec2 queue[QUEUE + 1u];  // first photon, marks; one more, for a store of nothing when it is full
+
+// Tests the next photons of the segment, at most 32; returns the run of them.
+uvec2 mark_accepted(Receiver r, GridLevel level, inout Walk walk, inout int steps) {
+    uvec2 run = uvec2(walk.first, 0u);
+    // Left at its end, for software Vulkan runs the body of a loop once more where it is left at its start. There,
+    // lanes that have left go through the rest of the trips with what they had: the body makes the same of it.
+    uint bit = walk.first < walk.last ? 1u : 0u;
+    do {
+        Photon photon = sorted_at(bit != 0u ? walk.first : 0u);
+        float squared;
+        run.y |= accepts(level, walk, photon, r.position, r.reach2, r.normal, r.both_sides, squared) ? bit : 0u;
+        walk.first += uint(bit != 0u);
+        steps -= int(bit != 0u);
+        bit <<= 1u;
+    } while (bit != 0u && walk.first < walk.last && steps > 0);
+    return run;
+}
+
+// Weighs the photons that are marked in the queue.
+void weigh_queue(Receiver r, uint queued, inout Gathered sum, inout int steps) {
+    uvec2 run = uvec2(0u);
+    for (uint taken = 0u; run.y != 0u || taken < queued;) {
+        uvec2 next = queue[taken];
+        bool ended = run.y == 0u;
+        run = ended ? next : run;
+        taken += uint(ended);
+        uint index = run.x + uint(findLSB(run.y));
+        run.y &= run.y - 1u;
+        weigh(r, index, sum);
+        --steps;
+    }
+}
 
 void main() {
     uint pixel = invocation_pixel();
@@ -53,80 +147,22 @@ void main() {
         if (cursor.cell.x == CURSOR_DONE) return;
         sum = gathered_at(pixel);
     }
-
-    vec3 position = hit.position;
-    vec3 normal = unpack_direction(hit_weight_at(pixel).normal);
-    bool both_sides = (hit.state & HIT_MASK) == HIT_BOTH_SIDES;
-    float radius2 = pixels_at(pixel).radius2;
-    float inverse_radius = inversesqrt(radius2);
-    vec3 tangent, bitangent;
-    tangents(normal, tangent, bitangent);
-    tangent *= inverse_radius;
-    bitangent *= inverse_radius;
-
-    Surface surface;
-    Bsdf bsdf;
-    vec3 outgoing;
-    if (HAS_GLOSS) glossy_hit(pixel, surface, bsdf, outgoing);
+    Receiver r = receiver_of(pixel, hit);
 
     begin(pixel);
     int steps = int(params.step_budget);
-    float reach2 = search_radius2(pixel, radius2);
-    CellBox box = cell_box(level_for(sqrt(reach2)), position, sqrt(reach2));
+    r.reach2 = search_radius2(pixel, r.radius2);
+    CellBox box = cell_box(level_for(sqrt(r.reach2)), r.position, sqrt(r.reach2));
     Walk walk;
-    uvec2 queue[QUEUE + 1u];  // first photon, marks; one more, for a store of nothing when it is full
     while (!walked(cursor, box) && steps > 0) {
         uint queued = 0u;
         FOR_SEGMENTS(box, cursor, walk, steps, queued < QUEUE, {
-            uvec2 run = uvec2(walk.first, 0u);
-            // Left at its end, for software Vulkan runs the body of a loop once more where it is left at its start.
-            // There, lanes that have left go through the rest of the trips with what they had: the body makes the same
-            // of it.
-            uint bit = walk.first < walk.last ? 1u : 0u;
-            do {
-                Photon photon = sorted_at(bit != 0u ? walk.first : 0u);
-                float squared;
-                run.y |= accepts(box.level, walk, photon, position, reach2, normal, both_sides, squared) ? bit : 0u;
-                walk.first += uint(bit != 0u);
-                steps -= int(bit != 0u);
-                bit <<= 1u;
-            } while (bit != 0u && walk.first < walk.last && steps > 0);
+            uvec2 run = mark_accepted(r, box.level, walk, steps);
             // A store by all lanes: a branch for each would guess wrong.
             queue[queued] = run;
             queued += uint(run.y != 0u);
         })
-        uvec2 run = uvec2(0u);
-        for (uint taken = 0u; run.y != 0u || taken < queued;) {
-            uvec2 next = queue[taken];
-            bool ended = run.y == 0u;
-            run = ended ? next : run;
-            taken += uint(ended);
-            uint index = run.x + uint(findLSB(run.y));
-            run.y &= run.y - 1u;
-            Photon photon = sorted_at(index);
-            PhotonFlux flux = sorted_flux_at(index);
-            vec3 offset = photon.position - position;
-            float squared = dot(offset, offset);
-            vec3 power = abs(flux.power);
-            vec3 towards = unpack_direction(flux.direction);
-            if (HAS_SMOOTH) {
-                // Photons arrive per area of the true surface, the BRDF is that of the shaded one.
-                vec3 geometric = unpack_direction(photon.normal);
-                float cos_shading = dot(towards, normal);
-                power *= max(0.0, both_sides ? abs(cos_shading) : cos_shading) / max(0.01, dot(towards, geometric));
-            }
-            if (HAS_GLOSS) {
-                uint part = (floatBitsToUint(flux.power.r) & 0x80000000u) != 0u ? PART_ALL : PART_GATHERED;
-                power *= PI * rough_bsdf(bsdf, surface, outgoing, towards, part);
-            }
-            bool inside = squared < radius2;
-            float q = squared * inverse_radius * inverse_radius;
-            add_corrected(sum.flux, sum.excess,
-                          inside ? power * photon_weight(q, (floatBitsToUint(flux.power.g) & 0x80000000u) != 0u) : vec3(0.0));
-            sum.count += inside ? 1u : 0u;
-            --steps;
-            record(pixel, Accepted(vec2(dot(offset, tangent), dot(offset, bitangent)), q, power, index), inside);
-        }
+        weigh_queue(r, queued, sum, steps);
     }
     flush(pixel);
     gathered[pixel] = sum;

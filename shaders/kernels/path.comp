@@ -14,6 +14,7 @@
 #include "include/light_ray.glsl"
 #include "include/path.glsl"
 #include "include/rng.glsl"
+#include "include/split.glsl"
 #include "include/sum.glsl"
 #include "include/surface.glsl"
 #include "include/traverse.glsl"
@@ -36,14 +37,14 @@ float power_heuristic(float density, float other) {
 // The weight of light that a ray of the path meets, where it is drawn with `light_density` too.
 float met_weight(TraceState state, float light_density) {
     if (state.density != DELTA) return power_heuristic(state.density, light_density);
-    return HAS_SPLIT && (state.memory & PATH_CAUSTIC) != 0u ? 0.0 : 1.0;
+    return photons_bring_met(state.flags) ? 0.0 : 1.0;
 }
 
 // What an emitter sends along the ray that met it, weighed.
 vec3 met_emission(TraceState state, Surface surface, SurfaceMaterial material) {
     bool double_sided = has(material, SURFACE_DOUBLE_SIDED);
     if (material.emission == vec3(0.0) || !(surface.front || double_sided)) return vec3(0.0);
-    if ((state.memory & PATH_SCATTERED) != 0u && state.distance < params.near_lights) return vec3(0.0);
+    if (photons_bring_emission(state.flags, state.distance)) return vec3(0.0);
     return material.emission * met_weight(state, met_density(material, surface, state.direction, state.distance));
 }
 
@@ -56,11 +57,10 @@ void ask_for_light(inout TraceState state, Bsdf bsdf, Surface surface, LobeWeigh
     if (light.density > 0.0) {
         factor *= power_heuristic(light.density, scatter_density(bsdf, surface, lobes, wo, light.direction));
     }
-    factor *= transmittance_to(light, state.memory, bsdf, surface);
-    // What is lit so near, and seen by way of another surface, is left to photons.
-    bool near = (state.memory & PATH_STRAIGHT) == 0u && light.triangle != NO_TRIANGLE &&
-                light.distance < params.near_lights;
-    if (!near) state.light_ray = ray_to(light, state.throughput * factor, surface);
+    factor *= transmittance_to(light, state.flags, bsdf, surface);
+    if (!photons_bring_asked(state.flags, light.triangle, light.distance)) {
+        state.light_ray = ray_to(light, state.throughput * factor, surface);
+    }
 }
 
 // Scatters the path: sets its direction, its density and its throughput; false where it ends.
@@ -77,10 +77,66 @@ bool scatter(inout TraceState state, Bsdf bsdf, Surface surface, LobeWeights lob
                  (abs(dot(state.direction, surface.normal)) / state.density);
     }
     state.throughput *= weight;
-    bool again = state.density != DELTA && (state.memory & PATH_STRAIGHT) == 0u;
-    state.memory = again ? state.memory | PATH_SCATTERED : state.memory & ~PATH_SCATTERED;
-    state.memory = pass_boundary(leave_lobe(state.memory, state.density), bsdf, lobe, surface);
+    state.flags = leave_lobe(split_path(state.flags, state.density), state.density);
+    state.flags = pass_boundary(state.flags, bsdf, lobe, surface);
     return any(greaterThan(state.throughput, vec3(0.0)));
+}
+
+// A ray of the path that leaves the scene.
+void meet_nothing(inout TraceState state, vec3 direction) {
+    if (HAS_ENVIRONMENT) {
+        vec3 met = environment_radiance(direction);
+        if (met != vec3(0.0)) met *= met_weight(state, environment_density(direction));
+        state.radiance += state.throughput * met;
+    }
+    state.ended = 1u;
+}
+
+// The surface that the path has met: its light, one point of the lights, and on by a lobe. False where
+// the path ends.
+bool meet(inout TraceState state, uint pixel, uint path, Hit hit, Surface surface, SurfaceMaterial material,
+          float coverage) {
+    uint bounces = state.flags & PATH_BOUNCES;
+    state.distance += hit.t;
+    if (HAS_VOLUME) state.throughput *= transmittance(state.flags, surface, hit.t);
+    uint dimension = FIRST_DIMENSION + 3u * bounces;
+    uvec4 bits = random_words(params.seed, path, STREAM_PATH, pixel, dimension);
+    vec4 u = random4(params.seed, path, STREAM_PATH, pixel, dimension + 1u);
+    vec4 v = random4(params.seed, path, STREAM_PATH, pixel, dimension + 2u);
+    bool alive = true;
+    if (HAS_ALPHA && v.z >= coverage) {
+        // It is not there.
+    } else if (HAS_UNLIT && has(material, SURFACE_UNLIT)) {
+        if ((state.flags & PATH_STRAIGHT) != 0u) state.radiance += state.throughput * material.color;
+        alive = false;
+    } else {
+        state.radiance += state.throughput * met_emission(state, surface, material);
+        float ior = index_for_path(material, STREAM_PATH, pixel + state.done * pixel_count(), state.flags,
+                                   state.throughput);
+        Bsdf bsdf = bsdf_of(material, ior, surface.front);
+        LobeWeights lobes = lobes_of(bsdf, surface, -state.direction);
+        // Lamps seen by way of weak lobes must not be missed.
+        if ((state.flags & PATH_STRAIGHT) != 0u) lobes = evened(lobes);
+        if (params.light_count > 0u && gathers_light(bsdf)) ask_for_light(state, bsdf, surface, lobes, bits, v.xy);
+        alive = scatter(state, bsdf, surface, lobes, u);
+        state.distance = 0.0;
+    }
+    alive = alive && bounces < params.max_depth;
+    if (alive && bounces >= FIRST_ROULETTE) {
+        // Russian roulette.
+        float survival = min(1.0, largest(state.throughput));
+        alive = u.z < survival;
+        state.throughput *= 1.0 / survival;
+    }
+    state.origin = leave(surface, state.direction);
+    return alive;
+}
+
+// The path and its ray to a light have ended: adds what it has brought, and begins the next one.
+void end_path(inout TraceState state) {
+    bool valid = finite(state.radiance);
+    if (!valid) atomicAdd(status.invalid, 1u);
+    state = new_path(state.done + 1u, state.sum + (valid ? state.radiance : vec3(0.0)));
 }
 
 void main() {
@@ -102,7 +158,7 @@ void main() {
         uint path = launch.iteration * launch.count + state.done;
         bool shadow = state.light_ray.distance > 0.0;
         float from_eye;
-        if ((state.memory & PATH_BOUNCES) == 0u) camera_ray(pixel, path, state.origin, state.direction, from_eye);
+        if ((state.flags & PATH_BOUNCES) == 0u) camera_ray(pixel, path, state.origin, state.direction, from_eye);
         vec3 origin = shadow ? state.light_ray.origin : state.origin;
         vec3 direction = shadow ? state.light_ray.direction : state.direction;
         bool fresh = steps + 1 == int(params.step_budget);
@@ -118,12 +174,7 @@ void main() {
             state.radiance += state.light_ray.light;
             state.light_ray.distance = 0.0;
         } else if (found == TRACE_MISS) {
-            if (HAS_ENVIRONMENT) {
-                vec3 met = environment_radiance(direction);
-                if (met != vec3(0.0)) met *= met_weight(state, environment_density(direction));
-                state.radiance += state.throughput * met;
-            }
-            state.ended = 1u;
+            meet_nothing(state, direction);
         } else {
             Surface surface = surface_at(hit, direction);
             SurfaceMaterial material = material_at(hit, direction, surface);
@@ -131,49 +182,11 @@ void main() {
             if (shadow) {
                 pass_surface(state.light_ray, surface, hit.t, coverage);
             } else {
-                ++state.memory;
-                uint bounces = state.memory & PATH_BOUNCES;
-                state.distance += hit.t;
-                if (HAS_VOLUME) state.throughput *= transmittance(state.memory, surface, hit.t);
-                uint dimension = FIRST_DIMENSION + 3u * bounces;
-                uvec4 bits = random_words(params.seed, path, STREAM_PATH, pixel, dimension);
-                vec4 u = random4(params.seed, path, STREAM_PATH, pixel, dimension + 1u);
-                vec4 v = random4(params.seed, path, STREAM_PATH, pixel, dimension + 2u);
-                bool alive = true;
-                if (HAS_ALPHA && v.z >= coverage) {
-                    // It is not there.
-                } else if (HAS_UNLIT && has(material, SURFACE_UNLIT)) {
-                    if ((state.memory & PATH_STRAIGHT) != 0u) state.radiance += state.throughput * material.color;
-                    alive = false;
-                } else {
-                    state.radiance += state.throughput * met_emission(state, surface, material);
-                    float ior = index_for_path(material, STREAM_PATH, pixel + state.done * pixel_count(), state.memory,
-                                               state.throughput);
-                    Bsdf bsdf = bsdf_of(material, ior, surface.front);
-                    LobeWeights lobes = lobes_of(bsdf, surface, -direction);
-                    // Lamps seen by way of weak lobes must not be missed.
-                    if ((state.memory & PATH_STRAIGHT) != 0u) lobes = evened(lobes);
-                    if (params.light_count > 0u && gathers_light(bsdf)) {
-                        ask_for_light(state, bsdf, surface, lobes, bits, v.xy);
-                    }
-                    alive = scatter(state, bsdf, surface, lobes, u);
-                    state.distance = 0.0;
-                }
-                alive = alive && bounces < params.max_depth;
-                if (alive && bounces >= FIRST_ROULETTE) {
-                    float survival = min(1.0, largest(state.throughput));
-                    alive = u.z < survival;
-                    state.throughput *= 1.0 / survival;
-                }
-                state.origin = leave(surface, state.direction);
-                state.ended = alive ? 0u : 1u;
+                ++state.flags;
+                state.ended = meet(state, pixel, path, hit, surface, material, coverage) ? 0u : 1u;
             }
         }
-        if (state.ended != 0u && state.light_ray.distance == 0.0) {
-            bool valid = finite(state.radiance);
-            if (!valid) atomicAdd(status.invalid, 1u);
-            state = new_path(state.done + 1u, state.sum + (valid ? state.radiance : vec3(0.0)));
-        }
+        if (state.ended != 0u && state.light_ray.distance == 0.0) end_path(state);
     }
     traces[pixel] = state;
     if (state.done == launch.count) image[pixel] = state.sum / float(launch.count);

@@ -49,7 +49,7 @@
 #define HIT_EMISSION(ROW)      ROW(17, hit_emission, HitEmission, pixel, one, records, scratch, eye)
 #define AOVS(ROW)              ROW(18, aovs, Aovs, pixel, where_aovs, storage, carried, eye)
 #define HIT_SURFACE(ROW)       ROW(19, hit_surface, HitSurface, pixel, where_glossy, records, scratch, apart)
-#define LIGHT_RAYS(ROW)        ROW(20, light_rays, LightRay, pixel, where_asking, storage, scratch, never)
+#define EYE_PATHS(ROW)         ROW(20, eye_paths, EyeState, pixel, one, storage, scratch, never)
 #define SEARCHES(ROW)          ROW(21, searches, uint, pixel, one, storage, scratch, never)
 #define CURSORS(ROW)           ROW(22, cursors, Cursor, pixel, one, storage, scratch, never)
 #define NEAREST(ROW)           ROW(23, nearest, float, pixel, nearest, storage, scratch, never)
@@ -71,17 +71,19 @@
 #define COUNTERS(ROW)          ROW(38, counters, uint, counter, one, words, scratch, apart)
 // [rings x F_QUANTILES] thresholds of the F-tests.
 #define QUANTILES(ROW)         ROW(39, quantiles, float, rest, uploaded, storage, scratch, never)
+// Of pixels again: searches that are unfinished.
+#define SEARCH_STATES(ROW)     ROW(40, search_states, SearchState, pixel, one, storage, scratch, never)
 
 #define SCENE_BUFFERS(ROW)                                                                               \
     TRIANGLES(ROW) SHADING(ROW) TEXCOORDS(ROW) VERTEX_COLORS(ROW) TANGENTS(ROW) MATERIALS(ROW) TEXTURES(ROW) \
     IMAGES(ROW) LIGHTS(ROW) ENVIRONMENT(ROW) ENVIRONMENT_ALIAS(ROW)
 #define BUFFERS(ROW)                                                                                      \
-    PARAMS(ROW) STATUS(ROW) GRID(ROW) NODES(ROW) SCENE_BUFFERS(ROW)                                                  \
-    HIT_POSITION(ROW) HIT_WEIGHT(ROW) HIT_EMISSION(ROW) AOVS(ROW) HIT_SURFACE(ROW) LIGHT_RAYS(ROW)        \
+    PARAMS(ROW) STATUS(ROW) GRID(ROW) NODES(ROW) SCENE_BUFFERS(ROW)                                       \
+    HIT_POSITION(ROW) HIT_WEIGHT(ROW) HIT_EMISSION(ROW) AOVS(ROW) HIT_SURFACE(ROW) EYE_PATHS(ROW)         \
     SEARCHES(ROW) CURSORS(ROW) NEAREST(ROW) GATHERED(ROW) FILM(ROW) PIXELS(ROW) TALLY(ROW) MOMENTS(ROW)   \
     IMAGE(ROW) TRACES(ROW)                                                                                \
     PATHS(ROW) PHOTONS(ROW) PHOTON_FLUX(ROW) SORTED(ROW) SORTED_FLUX(ROW) PAIRS_A(ROW) PAIRS_B(ROW)       \
-    COUNTERS(ROW) QUANTILES(ROW)
+    COUNTERS(ROW) QUANTILES(ROW) SEARCH_STATES(ROW)
 // clang-format on
 
 // PARAMS(BINDING_NUMBER): its binding.

@@ -238,28 +238,25 @@ RECORD(Light)
     FIELD(uint, normal)    /* geometric, on the side it arrived at, octahedral snorm16x2 */
 RECORD(Photon)
 #define FIELDS_PhotonFlux(FIELD, ARRAY, OPTIONAL) \
-    /* W (frame-scaled), not yet divided by the number of emitted paths; red with its sign bit set: the photon \
-       comes straight from a punctual light by way of mirrors and smooth glass alone, and at least one: no eye \
-       path finds its light. Green with its sign bit set, where light is split: its first surface that is not \
-       smooth */ \
+    /* W (frame-scaled), not yet divided by the number of emitted paths; its sign bits: include/photon_flux.glsl */ \
     FIELD(vec3, power) \
     FIELD(uint, direction)  /* unit, towards where it came from, octahedral snorm16x2 */
 RECORD(PhotonFlux)
 
 // Where an eye path ended. 3 records of 16 bytes, one array each, and a fourth in glossy scenes.
 #define FIELDS_HitPosition(FIELD, ARRAY, OPTIONAL) \
-    FIELD(vec3, position)  /* scene frame; while the path is unfinished and goes on: origin of the next ray */ \
-    FIELD(uint, state)     /* HIT_* | diffuse albedo, 10 bits a channel, << 2: what the F-tests weigh photons by */
+    FIELD(vec3, position)  /* scene frame */ \
+    /* HIT_* | diffuse albedo, 10 bits a channel, << HIT_BITS: what the F-tests weigh photons by; hit_kind, hit_albedo \
+       and hit_state of include/hits.glsl */ \
+    FIELD(uint, state)
 RECORD(HitPosition)
 #define FIELDS_HitWeight(FIELD, ARRAY, OPTIONAL) \
-    /* path throughput * albedo / pi (glossy scenes: / pi alone); unfinished: path throughput */ \
-    FIELD(vec3, weight) \
-    FIELD(uint, normal)  /* shading normal on the eye's side, octahedral; unfinished: bounces | PATH_* */
+    FIELD(vec3, weight)  /* path throughput * albedo / pi (glossy scenes: / pi alone) */ \
+    FIELD(uint, normal)  /* shading normal on the eye's side, octahedral */
 RECORD(HitWeight)
 #define FIELDS_HitEmission(FIELD, ARRAY, OPTIONAL) \
     FIELD(vec3, emission)    /* throughput * radiance of emitters met on the way */ \
-    /* radius of the pixel's footprint at the hit, scene frame; unfinished: length so far */ \
-    FIELD(float, footprint)
+    FIELD(float, footprint)  /* radius of the pixel's footprint at the hit, scene frame */
 RECORD(HitEmission)
 #define FIELDS_HitSurface(FIELD, ARRAY, OPTIONAL) \
     FIELD(uint, triangle)     /* what the BSDF is made from again */ \
@@ -268,18 +265,22 @@ RECORD(HitEmission)
 RECORD(HitSurface)
 #define HIT_NONE 0u        // nothing to gather: the path left the scene or was absorbed
 #define HIT_DIFFUSE 1u     // gathers photons that arrive on the side it is seen from
-#define HIT_UNFINISHED 2u  // the step budget ran out: the next round goes on
+#define HIT_UNFINISHED 2u  // the step budget ran out: the next round goes on with the EyeState
 #define HIT_BOTH_SIDES 3u  // gathers on a rough surface that transmits
 #define HIT_MASK 3u
+#define HIT_BITS 2u
 
-// What a path in flight remembers, in one word: bounces | flags | material of the solid it is in.
-#define PATH_BOUNCES 0x7ffu
+// The flags of a path in flight, one word: bounces | PATH_* | material of the solid it is in << PATH_MEDIUM_SHIFT.
+#define PATH_BOUNCES 0x7ffu     // up to the largest --max-depth, 1024
 #define PATH_STRAIGHT 0x800u    // it has met nothing but delta lobes since it left the eye or a punctual light
 #define PATH_DISPERSED 0x1000u  // its wavelength is drawn
 #define PATH_DIRECT 0x2000u     // a photon that has met nothing yet since it left a punctual light or a triangle
-#define PATH_SCATTERED 0x4000u  // where light is split: a photon since it met another lobe than a delta, but for the
-                                // surface near its lamp; an eye path whose last lobe was no delta, and one before it neither
-#define PATH_SEEN 0x4000u       // an eye path that has met a surface that is there
+// Where light is split, not of eye paths: a photon since it met another lobe than a delta, but for the surface near its
+// lamp; a path of the path tracer whose last lobe was no delta, and one before it neither.
+#define PATH_SCATTERED 0x4000u
+// Of eye paths alone, which have no use for PATH_SCATTERED: no bit of the word is left. It has met a surface that is
+// there.
+#define PATH_SEEN PATH_SCATTERED
 #define PATH_CAUSTIC 0x8000u    // a photon that left its light by way of a delta lobe, or of a surface near a lamp; an
                                 // eye path whose last lobe was a delta and one before was not
 #define PATH_MEDIUM_SHIFT 16u
@@ -295,18 +296,35 @@ struct LightRay {
 };
 #define NO_TRIANGLE 0xffffffffu
 
-// Sum of one pass of the gather over a pixel's disc, read as 2 texels. While an eye path is unfinished: the rest of
-// what it remembers.
+// An eye path between two rays: while it is in flight, and where it runs out of steps until the next round.
+struct EyeState {
+    vec3 origin;           // of the next ray
+    uint flags;            // bounces | PATH_*
+    vec3 direction;
+    float followed;        // density with which rough lobes gave the direction, 1/sr; 0: none did
+    vec3 throughput;
+    float leg;             // length since the last vertex
+    vec3 emission;         // throughput * radiance of what it has met so far
+    float distance;        // length since the eye
+    uint end;              // state of the hit that it has ended in; HIT_UNFINISHED: it goes on
+    LightRay light_ray;    // that it has chosen so far
+};
+
+// Sum of one pass of the gather over a pixel's disc, read as 2 texels.
 #define FIELDS_Gathered(FIELD, ARRAY, OPTIONAL) \
-    /* sum of photon power * correction, without the hit's weight; unfinished: direction of the ray */ \
-    FIELD(vec3, flux) \
-    /* accepted photons; unfinished: the state that the path ends in, HIT_UNFINISHED: it goes on */ \
-    FIELD(uint, count) \
-    /* what rounding has left too much in flux (Kahan 1965); unfinished: the density with which rough lobes \
-       gave the direction, the length since the last vertex, 0 */ \
-    FIELD(vec3, excess) \
+    FIELD(vec3, flux)    /* sum of photon power * correction, without the hit's weight */ \
+    FIELD(uint, count)   /* accepted photons */ \
+    FIELD(vec3, excess)  /* what rounding has left too much in flux (Kahan 1965) */ \
     FIELD(uint, unused)
 RECORD(Gathered)
+
+// A search for the k nearest photons of a pixel at the end of a round.
+struct SearchState {
+    float largest;         // kept squared distance, once there are k; -1: none
+    uint largest_index;    // its row of nearest
+    float radius;          // within which it looks
+    uint kept;             // squared distances
+};
 
 // What a pixel remembers between iterations, read as 3 texels.
 #define FIELDS_PixelState(FIELD, ARRAY, OPTIONAL) \
@@ -350,7 +368,7 @@ struct PathState {
     vec3 origin;
     uint path;         // NO_PATH: none in flight
     vec3 direction;
-    uint memory;       // bounces | PATH_*
+    uint flags;        // bounces | PATH_*
     vec3 power;
     uint stored;       // photons this lane has stored
     float power0;      // largest channel of the power at emission, for Russian roulette
@@ -363,7 +381,7 @@ struct PathState {
 // ray to a light, where one is asked for.
 struct TraceState {
     vec3 origin;
-    uint memory;           // bounces | PATH_*
+    uint flags;            // bounces | PATH_*
     vec3 direction;
     float density;         // 1/sr, with which the direction was drawn; DELTA after the camera and delta lobes
     vec3 throughput;

@@ -10,7 +10,8 @@ float reflection_width(Bsdf b) { return b.alpha; }
 vec3 reflection_normal(Surface surface) { return surface.normal; }
 
 float reflection_weight(Bsdf b, Surface surface, vec3 wo) {
-    return largest(facet_reflectance(b, min(1.0, dot(surface.normal, wo)))) * below_clearcoat(b, coat_cosine(surface, wo));
+    float cosine = min(1.0, dot(surface.normal, wo));
+    return largest(facet_reflectance(b, cosine)) * below_clearcoat(b, coat_cosine(surface, wo));
 }
 
 vec3 reflection_sample(Bsdf b, Surface surface, Facet facet, vec2 u, bool radiance, inout vec3 direction,

@@ -1,0 +1,253 @@
+// An eye path and what it does: it meets surfaces and light, asks for a light (next-event estimation), chooses a lobe
+// and follows it (BSDF sampling) or gathers photons there. What it meets and what it asks for are weighed by the
+// balance heuristic (multiple importance sampling). Reads the scene; writes the records of the hit, AOVs, and the state
+// of a path that has run out of steps.
+#ifndef EYE_PATH_GLSL
+#define EYE_PATH_GLSL
+
+#include "include/kernel.glsl"
+#include "include/bsdf.glsl"
+#include "include/camera.glsl"
+#include "include/environment.glsl"
+#include "include/frame.glsl"
+#include "include/hits.glsl"
+#include "include/light.glsl"
+#include "include/light_ray.glsl"
+#include "include/path.glsl"
+#include "include/rng.glsl"
+#include "include/split.glsl"
+#include "include/sum.glsl"
+#include "include/surface.glsl"
+#include "include/traverse.glsl"
+
+AOVS(UPDATES)
+EYE_PATHS(UPDATES)
+
+#define FIRST_BOUNCE_DIMENSION 2u  // stratified dimensions 0 and 1 place the ray in the pixel
+#define LOBE_DIMENSIONS 4096u      // of random numbers, beyond those of bounces: where in a lobe
+#define LIGHT_DIMENSIONS 8192u     // which light is asked for, and where on it
+
+struct EyePath {
+    uint pixel;
+    EyeState at;           // its next ray, and what it has found
+    HitPosition position;  // where it has ended; HIT_UNFINISHED: it, or its ray to a light, goes on next round
+    HitWeight weight;
+    uint rays;             // traced by this invocation
+    int steps;             // left to it
+};
+
+// A surface that the path has met.
+struct Vertex {
+    Hit hit;
+    Surface surface;
+    SurfaceMaterial material;
+    Bsdf bsdf;
+    vec3 wo;            // towards the eye
+    uint depth;         // bounces before it
+    vec4 u;             // where in a lobe, and whether the surface is there
+    LobeWeights lobes;  // to choose from: gathering has the place of the diffuse lobe
+    LobeWeights rough;  // those of rough lobes that are followed
+    float rough_share;  // the probability that one of them is
+    bool asks;          // for a light
+};
+
+uint bounces_of(uint flags) { return flags & PATH_BOUNCES; }
+
+// ---- begin, load, store ----
+
+EyePath begin_eye_path(uint pixel) {
+    EyePath path;
+    path.pixel = pixel;
+    path.at = EyeState(vec3(0.0), PATH_OUTSIDE | PATH_STRAIGHT, vec3(0.0), 0.0, vec3(1.0), 0.0, vec3(0.0), 0.0,
+                       HIT_UNFINISHED, no_light_ray());
+    path.position = HitPosition(vec3(0.0), HIT_NONE);
+    path.weight = HitWeight(vec3(0.0), 0u);
+    path.rays = 0u;
+    path.steps = int(params.step_budget);
+    return path;
+}
+
+// True where the path was left unfinished, and goes on where it was.
+bool load(inout EyePath path) {
+    HitPosition left = hit_position_at(path.pixel);
+    bool unfinished = hit_kind(left) == HIT_UNFINISHED;
+    if (unfinished) {
+        path.at = eye_paths[path.pixel];
+        if (EYE_PATHS_ASK && path.at.end != HIT_UNFINISHED) {
+            path.position = HitPosition(left.position, path.at.end);
+            path.weight = hit_weight_at(path.pixel);
+        }
+    }
+    return unfinished;
+}
+
+// Out of steps: the path, or its ray to a light, goes on next round. fresh: one ray had the whole budget.
+void leave_unfinished(inout EyePath path, bool fresh) {
+    if (fresh) atomicAdd(status.stuck, 1u);
+    block_after(PASS_EYE);
+    path.position.state = HIT_UNFINISHED;
+}
+
+void store(EyePath path) {
+    if (path.position.state == HIT_UNFINISHED) eye_paths[path.pixel] = path.at;
+    hit_position[path.pixel] = path.position;
+    hit_weight[path.pixel] = path.weight;
+    hit_emission[path.pixel] = HitEmission(path.at.emission, path.at.distance * params.pixel_radius);
+}
+
+// ---- meet ----
+
+// The weight of light that a ray meets and that could be asked for with `density`: the balance heuristic. followed: the
+// density with which rough lobes gave the ray its direction; 0: none did, and nothing else finds this light.
+float met_weight(float followed, float density) { return followed > 0.0 ? followed / (followed + density) : 1.0; }
+
+void meet_nothing(inout EyePath path) {
+    if (!finite(path.at.direction)) {
+        // A ray that goes nowhere meets nothing: the update pass is to hear of it.
+        path.at.emission += path.at.direction;
+    } else if (HAS_ENVIRONMENT && sees_light(path.at.flags)) {
+        vec3 met = environment_radiance(path.at.direction);
+        if (EYE_PATHS_ASK && met != vec3(0.0)) {
+            met *= met_weight(path.at.followed, environment_density(path.at.direction));
+        }
+        path.at.emission += path.at.throughput * met;
+    }
+}
+
+Vertex meet(inout EyePath path, Hit hit) {
+    Vertex v;
+    v.depth = bounces_of(path.at.flags) - 1u;
+    path.at.distance += hit.t;
+    path.at.leg += hit.t;
+    v.wo = -path.at.direction;
+    v.surface = surface_at(hit, path.at.direction);
+    v.hit = hit;
+    v.material = material_at(hit, path.at.direction, v.surface);
+    if (HAS_VOLUME) path.at.throughput *= transmittance(path.at.flags, v.surface, hit.t);
+    v.u = vec4(0.0);
+    if (HAS_ROUGH || HAS_ALPHA) {
+        v.u = random4(params.seed, launch.iteration, STREAM_EYE, path.pixel, LOBE_DIMENSIONS + v.depth);
+    }
+    return v;
+}
+
+bool is_there(Vertex v) { return !(HAS_ALPHA && v.u.z >= coverage_of(v.material)); }
+
+bool is_unlit(Vertex v) { return HAS_UNLIT && has(v.material, SURFACE_UNLIT); }
+
+// Writes down what the first surface of the path is like.
+void describe(inout EyePath path, Vertex v) {
+    if (HAS_AOVS && (path.at.flags & PATH_SEEN) == 0u) {
+        path.at.flags |= PATH_SEEN;
+        Aovs sum = aovs[path.pixel];
+        add(sum.albedo, sum.albedo_low, v.material.color);
+        add(sum.normal, sum.normal_low, v.surface.normal);
+        add(sum.depth, sum.depth_low, path.at.distance * dot(path.at.direction, params.forward));
+        ++sum.hits;
+        aovs[path.pixel] = sum;
+    }
+}
+
+// What emits no photons must not be seen by rough lobes: photons would have to bring their share of it.
+void meet_unlit(inout EyePath path, Vertex v) {
+    if ((path.at.flags & PATH_STRAIGHT) != 0u && sees_light(path.at.flags)) {
+        path.at.emission += path.at.throughput * v.material.color;
+    }
+}
+
+void meet_emission(inout EyePath path, Vertex v) {
+    if ((v.surface.front || has(v.material, SURFACE_DOUBLE_SIDED)) && sees_light(path.at.flags)) {
+        vec3 met = v.material.emission;
+        if (EYE_PATHS_ASK && met != vec3(0.0)) {
+            met *= met_weight(path.at.followed, met_density(v.material, v.surface, path.at.direction, path.at.leg));
+        }
+        path.at.emission += path.at.throughput * met;
+    }
+}
+
+// How the surface scatters, and what the path has to choose from there.
+void weigh_lobes(inout EyePath path, inout Vertex v) {
+    float ior = index_for_path(v.material, STREAM_EYE, path.pixel, path.at.flags, path.at.throughput);
+    v.bsdf = bsdf_of(v.material, ior, v.surface.front);
+    v.lobes = lobes_of(v.bsdf, v.surface, v.wo);
+    v.rough = share_with_photons(v.bsdf, v.lobes);
+    v.rough_share = total(v.rough) / total(v.lobes);
+    v.asks = EYE_PATHS_ASK && params.light_count > 0u && v.rough_share > 0.0;
+}
+
+// ---- ask ----
+
+// Asks for a light: one point of one. Of all that a path asks for one is kept in proportion to what it brings.
+void ask(inout EyePath path, Vertex v) {
+    uvec4 bits = random_words(params.seed, launch.iteration, STREAM_EYE, path.pixel, LIGHT_DIMENSIONS + v.depth);
+    LightSample light = sample_light(bits, v.u.xy, v.surface.position);
+    vec3 factor = light.radiance * rough_bsdf(v.bsdf, v.surface, v.wo, light.direction, PART_FOLLOWED);
+    factor *= abs(dot(light.direction, v.surface.normal)) * transmittance_to(light, path.at.flags, v.bsdf, v.surface);
+    // What a path of full length would meet next it does not meet. (Rays to lights pass any number of surfaces that are
+    // partly there, of which each costs a path a bounce: where it has too few left that share is lost.)
+    if (light.density > 0.0 && bounces_of(path.at.flags) < params.max_depth) {
+        float other = v.rough_share * scatter_density(v.bsdf, v.surface, v.rough, v.wo, light.direction);
+        factor *= light.density / (light.density + other);
+    }
+    take_one(path.at.light_ray, ray_to(light, path.at.throughput * factor, v.surface), v.u.w);
+}
+
+// Goes on with the ray to a light; true where it is to go on beyond a surface that is partly there.
+bool light_ray_goes_on(inout EyePath path, uint found, Hit hit) {
+    bool reaches = reaches_light(path.at.light_ray, found, hit);
+    if (reaches) path.at.emission += path.at.light_ray.light;
+    bool passes = HAS_ALPHA && !reaches;
+    if (passes) {
+        vec3 direction = path.at.light_ray.direction;
+        Surface surface = surface_at(hit, direction);
+        pass_surface(path.at.light_ray, surface, hit.t, coverage_of(material_at(hit, direction, surface)));
+    }
+    return passes;
+}
+
+// ---- choose, follow, gather ----
+
+// A lobe, or LOBE_DIFFUSE to gather, by the probabilities of v.lobes.
+uint choose(inout EyePath path, Vertex v) {
+    float choice = stratified(params.seed, launch.iteration, path.pixel, v.depth + FIRST_BOUNCE_DIMENSION);
+    float inverse_probability;
+    uint lobe = choose_lobe(v.lobes, choice, inverse_probability);
+    if (lobe != LOBE_NONE) path.at.throughput *= inverse_probability;
+    return lobe;
+}
+
+// The path ends: photons are gathered here.
+void gather(inout EyePath path, Vertex v) {
+    path.position.position = v.surface.position;
+    path.weight.normal = pack_direction(v.surface.normal);
+    if (HAS_GLOSS) {
+        path.weight.weight = path.at.throughput * (1.0 / PI);
+        hit_surface[path.pixel] = HitSurface(v.hit.triangle, v.hit.barycentric, pack_direction(v.wo));
+        path.position.state = hit_state(HIT_DIFFUSE | gathering_sides(v.bsdf), uvec3(1023u));
+    } else {
+        path.weight.weight = path.at.throughput * v.bsdf.diffuse * (1.0 / PI);
+        path.position.state = hit_state(HIT_DIFFUSE, uvec3(clamp(v.bsdf.diffuse, 0.0, 1.0) * 1023.0 + 0.5));
+    }
+}
+
+// Follows a lobe to the next ray; false where it sends nothing on.
+bool follow(inout EyePath path, Vertex v, uint lobe) {
+    float density;
+    path.at.throughput *= sample_lobe(lobe, v.bsdf, v.surface, v.u.xy, true, path.at.direction, density);
+    if (HAS_ROUGH) {
+        path.at.throughput *= followed_weight(density, dot(path.at.direction, normal_of(lobe, v.surface)));
+        path.at.flags = leave_lobe(path.at.flags, density);
+        // A clearcoat's light from below the horizon of its base is not asked for: rough_bsdf leaves it out.
+        float side = dot(path.at.direction, v.surface.normal) * dot(path.at.direction, v.surface.geometric);
+        bool met_alone = !v.asks || density == DELTA || side <= 0.0;
+        path.at.followed = met_alone ? 0.0 : v.rough_share * scatter_density(v.bsdf, v.surface, v.rough, v.wo,
+                                                                              path.at.direction);
+        path.at.leg = 0.0;
+    }
+    bool goes_on = !all(lessThanEqual(path.at.throughput, vec3(0.0)));
+    path.at.flags = pass_boundary(path.at.flags, v.bsdf, lobe, v.surface);
+    path.at.origin = leave(v.surface, path.at.direction);
+    return goes_on;
+}
+
+#endif
