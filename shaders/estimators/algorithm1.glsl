@@ -2,6 +2,7 @@
 #ifndef ALGORITHM1_GLSL
 #define ALGORITHM1_GLSL
 
+#include "include/pixels.glsl"
 #include "estimators/kept.glsl"
 
 // Of the estimator: reads what it keeps, once for all tests of an iteration.

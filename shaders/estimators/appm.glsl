@@ -3,6 +3,11 @@
 // the Laplacian of the radiance's luminance, N paths so far. Both are means over iterations; Delta by the five-point
 // stencil of the kernel with the pilot bandwidth r_d; luminances times params.flux_unit.
 // Uses K(t) = 7/(2 pi) (1 - 10 t^3 + 15 t^4 - 6 t^5).
+#include "include/colour.glsl"
+#include "include/hits.glsl"
+#include "include/pixels.glsl"
+#include "include/sampling.glsl"
+#include "include/sum.glsl"
 #include "estimators/kept.glsl"
 
 const float APPM_KAPPA = 5.0 / 48.0;              // int x_1^2 K

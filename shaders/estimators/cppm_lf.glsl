@@ -1,4 +1,5 @@
 // CPPM-LF: the null hypothesis is a linear density, supplementary section 5.2.2. Tallies are cppm's.
+#include "include/sampling.glsl"
 #include "estimators/tally.glsl"
 
 #define HOOK_RECORD STATISTIC_tally

@@ -26,6 +26,7 @@
 // Which of the two there are, and how many rows, the estimator's row of shared/estimators.h says; where a radius begins
 // estimators/kept.glsl clears them by it.
 
+#include "include/pixels.glsl"
 #include "include/split.glsl"
 
 struct Accepted {

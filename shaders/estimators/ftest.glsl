@@ -5,6 +5,9 @@
 // Moments: rows [0, c) sums of this iteration | [c, 2c) means of the cells | [2c, 2c + rings) sums of squared
 // deviations within the cells of a ring (Welford's recurrence: nothing cancels) | [2c + rings, 3c + 2 rings) the low
 // parts of means and squares: after 10^6 samples one of them is less than the rounding of their sum.
+#include "include/colour.glsl"
+#include "include/hits.glsl"
+#include "include/sum.glsl"
 #include "estimators/algorithm1.glsl"
 
 const uint MEANS = DISC_CELLS;

@@ -3,6 +3,7 @@
 #ifndef KEPT_GLSL
 #define KEPT_GLSL
 
+#include "include/kernel.glsl"
 #include "shared/estimators.h"
 #include "estimators/sectors.glsl"
 

@@ -3,6 +3,8 @@
 #ifndef SECTORS_GLSL
 #define SECTORS_GLSL
 
+#include "include/kernel.glsl"
+
 const uint RING_CELLS = FOLDED ? SECTORS / 2u : SECTORS;
 const uint DISC_CELLS = RINGS * RING_CELLS;
 
