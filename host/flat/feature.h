@@ -12,4 +12,7 @@ struct Feature {
     std::string reason;  // what in the scene or the settings asks for it
 };
 
+/// One by its bit, with the name of its row of FEATURE_TABLE.
+Feature make_feature(std::uint32_t bit, std::string reason);
+
 }  // namespace vkcppm

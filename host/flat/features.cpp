@@ -1,6 +1,7 @@
 #include "flat/features.h"
 
 #include <algorithm>
+#include <cassert>
 #include <functional>
 
 #include <fmt/format.h>
@@ -88,16 +89,29 @@ template <> std::string reason_of<FEATURE_ENVIRONMENT>(const Asked& asked) {
 
 }  // namespace
 
+Feature make_feature(std::uint32_t bit, std::string reason) {
+    const auto named = [](std::uint32_t of) {
+    // clang-format off
+#define NAME_FEATURE(row, NAME, words) if (of == FEATURE_##NAME) return #words;
+#define NAME_FEATURE_OF_MATERIAL(row, NAME, words, trait) NAME_FEATURE(row, NAME, words)
+        FEATURE_TABLE(NAME_FEATURE_OF_MATERIAL, NAME_FEATURE, NAME_FEATURE)
+        // clang-format on
+        assert(false && "no feature has this bit");
+        return "";
+    };
+    return {bit, named(bit), std::move(reason)};
+}
+
 std::vector<Feature> features_of(const Scene& scene, const std::vector<SurfaceTraits>& traits, const FlatScene& flat) {
     Asked asked{scene, traits, flat, std::vector<bool>(traits.size(), false), {}};
     for (const Triangle& triangle : scene.triangles) asked.used[triangle.material] = true;
-    const auto add = [&](std::uint32_t bit, const char* name, std::string reason) {
-        if (!reason.empty()) asked.features.push_back({bit, name, std::move(reason)});
+    const auto add = [&](std::uint32_t bit, std::string reason) {
+        if (!reason.empty()) asked.features.push_back(make_feature(bit, std::move(reason)));
     };
     // clang-format off
 #define MATERIAL(bit, NAME, words, trait) \
-    add(FEATURE_##NAME, #words, reason_of(asked, [](const SurfaceTraits& t) { return t.trait; }));
-#define SCENE(bit, NAME, words) add(FEATURE_##NAME, #words, reason_of<FEATURE_##NAME>(asked));
+    add(FEATURE_##NAME, reason_of(asked, [](const SurfaceTraits& t) { return t.trait; }));
+#define SCENE(bit, NAME, words) add(FEATURE_##NAME, reason_of<FEATURE_##NAME>(asked));
 #define SETTING(bit, NAME, words)
     FEATURE_TABLE(MATERIAL, SCENE, SETTING)
 #undef MATERIAL

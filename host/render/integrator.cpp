@@ -64,8 +64,7 @@ Integrator::Integrator(const SceneOnDevice& on_device, const Camera& camera, con
 
     counts_.pixels = pixels_;
     counts_.photon_lanes = params_.photon_lanes;
-    counts_.counters = std::uint64_t(params_.cells) + 1 + 2 * std::uint64_t(params_.photons) + 1 +
-                       (std::uint64_t(params_.sort_lanes) << digit_bits_) + params_.scan_blocks;
+    counts_.counters = COUNTERS_IN_ALL(params_, digit_bits_);
     counts_.tallies = tally_rows(estimator, settings.rings, settings.sectors);
     counts_.moments = moment_rows(estimator, settings.rings, settings.sectors);
     counts_.nearest = settings.knn;
@@ -189,7 +188,7 @@ void Integrator::compile(const std::vector<KernelId>& ids) {
         }
     }
     commands_.begin();
-    const gpu::Launch not_due{.iteration = ~0u, .round = 0, .last_round = 0, .offset = 0, .count = 0};
+    const gpu::Launch not_due{.iteration = ~0u};
     for (const KernelId id : ids) {
         for (const Kernel& form : kernels_.at(id).forms) commands_.launch(form, 1, not_due);
     }
@@ -214,38 +213,37 @@ void Integrator::iterate(std::uint32_t i, Pass from, Pass to, std::uint32_t firs
     if (runs(Pass::knn)) launch_rounds(KernelId::knn, std::nullopt, i, round(Pass::knn));
     if (runs(Pass::gather)) launch_rounds(KernelId::gather, pixels_, i, round(Pass::gather));
     if (!runs(Pass::update)) return;
-    launch(KernelId::update, pixels_,
-           {.iteration = i, .round = 0, .last_round = 1, .offset = plans_grid(i + 1) ? 1u : 0u, .count = 0});
-    launch(KernelId::advance, 1, {.iteration = i, .round = 0, .last_round = 1, .offset = 0, .count = 0});
+    launch(KernelId::update, pixels_, {.iteration = i, .last_round = 1, .plans_next = plans_grid(i + 1) ? 1u : 0u});
+    launch(KernelId::advance, 1, {.iteration = i, .last_round = 1});
 }
 
 void Integrator::build_grid(std::uint32_t i) {
-    const gpu::Launch plain{.iteration = i, .round = 0, .last_round = 1, .offset = 0, .count = 0};
-    const std::uint32_t paths_at = params_.cells + 1;
+    const gpu::Launch plain{.iteration = i, .last_round = 1};
     if (plans_grid(i)) launch(KernelId::grid_plan, 1, plain);
-    scan(i, paths_at, params_.photons + 1);  // photons before each path, and in all
-    launch(KernelId::grid_clear, stride_invocations, plain);
+    scan(i, COUNTERS_OF_PATHS(params_), params_.photons + 1);  // photons before each path, and in all
+    gpu::Launch clear = plain;
+    clear.search_group = kernels_.at(KernelId::knn).choice.forms().front().group;  // the form that launch_rounds takes
+    launch(KernelId::grid_clear, stride_invocations, clear);
     for (std::uint32_t level = 0; level < params_.grid_levels; ++level) {
         gpu::Launch push = plain;
-        push.count = level;
+        push.level = level;
         launch(KernelId::grid_key, params_.photon_lanes, push);
     }
-    const std::uint32_t radix_at = paths_at + 2 * params_.photons + 1;
     for (std::uint32_t digit = 0; digit < digits_; ++digit) {
         gpu::Launch push = plain;
-        push.offset = digit * digit_bits_;
-        push.count = digit % 2;
+        push.digit_shift = digit * digit_bits_;
+        push.reads_b = digit % 2;
         launch(KernelId::radix_count, params_.sort_lanes, push);
-        scan(i, radix_at, params_.sort_lanes << digit_bits_);
+        scan(i, COUNTERS_OF_RADIX(params_), params_.sort_lanes << digit_bits_);
         launch(KernelId::radix_scatter, params_.sort_lanes, push);
     }
     launch(KernelId::grid_order, stride_invocations, plain);
-    scan(i, 0, params_.cells + 1);  // photons before each cell
+    scan(i, COUNTERS_OF_CELLS, params_.cells + 1);  // photons before each cell
 }
 
-/// Exclusive scan of counters[offset .. offset + count).
-void Integrator::scan(std::uint32_t i, std::uint32_t offset, std::uint32_t count) {
-    const gpu::Launch push{.iteration = i, .round = 0, .last_round = 1, .offset = offset, .count = count};
+/// Exclusive scan of counters[first .. first + count).
+void Integrator::scan(std::uint32_t i, std::uint32_t first, std::uint32_t count) {
+    const gpu::Launch push{.iteration = i, .last_round = 1, .scan_first = first, .scan_count = count};
     launch(KernelId::scan_sums, params_.scan_blocks, push);
     launch(KernelId::scan_blocks, 1, push);
     launch(KernelId::scan_apply, params_.scan_blocks, push);
@@ -264,7 +262,7 @@ void Integrator::launch_rounds(KernelId id, std::optional<std::uint64_t> invocat
     const Compiled& kernel = kernels_.at(id);
     for (std::uint32_t r = 0; r < kernel.rounds; ++r) {
         const std::uint32_t last = r + 1 == kernel.rounds ? 1 : 0;
-        const gpu::Launch push{.iteration = i, .round = first_round + r, .last_round = last, .offset = 0, .count = 0};
+        const gpu::Launch push{.iteration = i, .round = first_round + r, .last_round = last};
         if (invocations) {
             launch(id, *invocations, push);
         } else {

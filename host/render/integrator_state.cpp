@@ -123,8 +123,8 @@ std::uint64_t Integrator::hash_of(Pass pass) const {
         }
         case Pass::photon: {
             // In the order of paths, whatever the lanes and their slots.
-            const std::uint64_t paths = params_.photons, counts_at = std::uint64_t(params_.cells) + 1;
-            const std::uint64_t slots_at = counts_at + paths + 1;
+            const std::uint64_t paths = params_.photons, counts_at = COUNTERS_OF_PATHS(params_);
+            const std::uint64_t slots_at = COUNTERS_OF_SLOTS(params_);
             const auto counters = buffers_.at(Binding::counters).download<std::uint32_t>(slots_at + paths);
             const std::uint64_t slots = std::uint64_t(params_.photon_lanes) * params_.photon_capacity;
             const auto photons = buffers_.at(Binding::photons).download<gpu::Photon>(slots);

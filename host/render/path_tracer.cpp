@@ -49,9 +49,8 @@ Image PathTracer::trace() {
         commands_.begin();
         for (std::uint32_t r = 0; r < rounds_; ++r) {
             const std::uint32_t last = r + 1 == rounds_ ? 1 : 0;
-            commands_.launch(
-                kernel_, size_.pixels(),
-                {.iteration = batches_, .round = first_round + r, .last_round = last, .offset = 0, .count = batch});
+            commands_.launch(kernel_, size_.pixels(),
+                             {.iteration = batches_, .round = first_round + r, .last_round = last, .paths = batch});
         }
         for (const Timing& timing : commands_.finish()) {
             ++pass_.calls;

@@ -106,10 +106,10 @@ Settings resolve_settings(const Settings& settings, const Scene& scene) {
 
 std::vector<Feature> features_of(const Settings& settings) {
     std::vector<Feature> features;
-    if (settings.aovs) features.push_back({FEATURE_AOVS, "further channels", "--aovs"});
+    if (settings.aovs) features.push_back(make_feature(FEATURE_AOVS, "--aovs"));
     if (settings.aperture > 0.0)
-        features.push_back({FEATURE_LENS, "depth of field", fmt::format("--aperture {:g}", settings.aperture)});
-    if (settings.caustics) features.push_back({FEATURE_SPLIT, "caustics alone", "a reference"});
+        features.push_back(make_feature(FEATURE_LENS, fmt::format("--aperture {:g}", settings.aperture)));
+    if (settings.caustics) features.push_back(make_feature(FEATURE_SPLIT, "a reference"));
     return features;
 }
 

@@ -98,7 +98,7 @@ float test_ratio(uint rings, PixelState state) {
     float within = 0.0;
     for (uint ring = 0u; ring < rings; ++ring) within += ring_squares[ring];
     if (between == 0.0) return 0.0;
-    if (within == 0.0) return 3.0e38;
+    if (within == 0.0) return FAR;
     float f = (m * between / float(cells - 1u)) / (within / (float(cells) * (m - 1.0)));
     return f / f_threshold(rings, m);
 }

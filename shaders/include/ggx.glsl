@@ -13,9 +13,9 @@
 float alpha_of(float roughness) { return roughness < 3e-4 ? 0.0 : roughness * roughness; }
 
 // The density, 1/sr, of a direction that only a delta lobe gives.
-const float DELTA = 3.0e38;
+const float DELTA = FAR;
 // The width of lobes that are not made of facets: photons are gathered on all of their light.
-const float WIDE = 3.0e38;
+const float WIDE = FAR;
 
 bool is_rough(float alpha) { return HAS_ROUGH && alpha > 0.0; }
 

@@ -3,7 +3,6 @@
 #define HITS_GLSL
 
 #include "include/kernel.glsl"
-#include "include/colour.glsl"
 
 HIT_POSITION(STORES)
 HIT_WEIGHT(STORES)

@@ -1,4 +1,5 @@
-// Light sources. Reads lights, and textures of those that have them.
+// Light sources: where light paths begin, and one sample of all light that arrives at a point, for next-event
+// estimation. Densities (pdf) are 1/sr. Reads lights, and textures of those that have them.
 #ifndef LIGHT_GLSL
 #define LIGHT_GLSL
 
@@ -13,6 +14,11 @@
 #include "include/texture.glsl"
 
 LIGHTS(RECORDS)
+
+// Of a spot or directional light: the unit direction of travel along its axis. Of a spot light: versines of its inner
+// and its outer cone.
+vec3 axis_of(Light light) { return light.e1; }
+vec2 cones_of(Light light) { return light.e2.xy; }
 
 // The share of a textured light's factor that is emitted at a point of it: its texture, where the surface is there.
 vec3 emitted_share(Light light, vec2 b) {
@@ -82,7 +88,7 @@ LightSample sample_light(uvec4 bits, vec2 v, vec3 position) {
     uint index;
     Light light = choose_light(bits, index);
     vec3 towards = light.position - position;
-    LightSample s = LightSample(vec3(0.0), 3.0e38, vec3(0.0), 0.0, NO_TRIANGLE);
+    LightSample s = LightSample(vec3(0.0), FAR, vec3(0.0), 0.0, NO_TRIANGLE);
     if (HAS_AREA_LIGHTS && light.kind == LIGHT_TRIANGLE) {
         vec2 b = sample_triangle(u.zw);
         towards += b.x * light.e1 + b.y * light.e2;
@@ -106,13 +112,14 @@ LightSample sample_light(uvec4 bits, vec2 v, vec3 position) {
         if (light.kind == LIGHT_POINT) {
             s.radiance /= 4.0 * PI;
         } else {
-            s.radiance *= spot_attenuation(light.e2.x, light.e2.y, versine(-s.direction, light.e1)) /
-                          (2.0 * PI * (light.e2.x + (light.e2.y - light.e2.x) / 3.0));
+            vec2 cones = cones_of(light);
+            s.radiance *= spot_attenuation(cones.x, cones.y, versine(-s.direction, axis_of(light))) /
+                          (2.0 * PI * (cones.x + (cones.y - cones.x) / 3.0));
         }
     }
     if (HAS_DIRECTIONAL_LIGHTS && light.kind == LIGHT_DIRECTIONAL) {
-        s.direction = -light.e1;
-        s.radiance = light.power / entry_area(light.e1);
+        s.direction = -axis_of(light);
+        s.radiance = light.power / entry_area(axis_of(light));
     }
     if (HAS_ENVIRONMENT && light.kind == LIGHT_ENVIRONMENT) {
         s.radiance = light.power * sample_environment(bits.z, u.w, v, s.direction);
@@ -147,11 +154,13 @@ uint emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 powe
         origin = light.position;
     }
     if (HAS_SPOT_LIGHTS && light.kind == LIGHT_SPOT) {
-        direction = normalize(from_frame(light.e1, sample_cone(sample_spot_versine(light.e2.x, light.e2.y, v.x), v.y)));
+        vec2 cones = cones_of(light);
+        vec3 local = sample_cone(sample_spot_versine(cones.x, cones.y, v.x), v.y);
+        direction = normalize(from_frame(axis_of(light), local));
         origin = light.position;
     }
     if (HAS_DIRECTIONAL_LIGHTS && light.kind == LIGHT_DIRECTIONAL) {
-        direction = light.e1;
+        direction = axis_of(light);
         origin = sample_entry(direction, v.xy);
     }
     if (HAS_ENVIRONMENT && light.kind == LIGHT_ENVIRONMENT) {

@@ -1,5 +1,5 @@
-// What a path remembers from bounce to bounce besides its ray and its throughput: the solid that it is in and whether
-// it has a wavelength, in one word (PATH_*).
+// What a path carries from bounce to bounce besides its ray and its throughput: its flags, one word (PATH_*), which say
+// how it came here, whether it has a wavelength, and the medium, the solid that it is in.
 #ifndef PATH_GLSL
 #define PATH_GLSL
 

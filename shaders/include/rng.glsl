@@ -7,10 +7,11 @@
 #define STREAM_EYE 0u
 #define STREAM_PHOTON 1u
 #define STREAM_GATHER 2u
-#define STREAM_SHIFT 3u
-#define STREAM_PATH 3u     // the shift uses dimensions below STRATIFIED_DIMENSIONS of iteration 0 alone, paths none of
-                           // them
+#define STREAM_PATH 3u
 #define STREAMS 4u
+// Of the shifts of stratified(): dimensions below STRATIFIED_DIMENSIONS of iteration 0, where the path tracer draws
+// nothing. They have its number because the pictures of every seed hang on it.
+#define STREAM_SHIFT STREAM_PATH
 
 uvec4 pcg4d(uvec4 v) {
     v = v * 1664525u + 1013904223u;

@@ -1,4 +1,4 @@
-// Samples of the unit square mapped to the distributions that light needs. Pure functions.
+// Samples of the unit square mapped to the distributions that light needs (warps). Pure functions.
 #ifndef SAMPLING_GLSL
 #define SAMPLING_GLSL
 

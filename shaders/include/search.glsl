@@ -72,7 +72,8 @@ bool accepts(GridLevel level, Walk walk, Photon photon, vec3 position, float rea
 // Loops over the segments of a box from `cursor` on while `steps` last and ROOM holds: cursor then says where to go on.
 // PHOTONS goes through photons [walk.first, walk.last) of the segment at hand while it has steps, one a photon; a
 // segment costs one more. Loops instead of branches: software Vulkan runs every branch of a loop body for every lane,
-// so rows are kept out of the inner one.
+// so rows are kept out of the inner one. A macro, because PHOTONS is a loop of the kernel's own and GLSL has no
+// lambdas. It takes the names cell and begin, and PHOTONS sees them.
 #define FOR_SEGMENTS(box, cursor, walk, steps, ROOM, PHOTONS)                                         \
     for (ivec3 cell = cursor_cell(cursor, box); cell.z <= box.high.z && steps > 0 && (ROOM);) {       \
         walk = walk_segment(box, cell);                                                               \

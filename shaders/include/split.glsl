@@ -55,8 +55,8 @@ uint split_path(uint flags, float density) {
 const float FIRST_NARROWER = 4.0;  // than the discs of other photons are those of photons at their first rough surface
 
 // pi R^2 times the kernel of a photon at q = |offset|^2 / R^2 in [0, 1): twice the estimate of a disc of half the area
-// less that of the whole, so that the bias in R^2 cancels (Richardson 1911). first: the photon has met its first surface
-// that is not smooth; what comes after that is less sharp by far.
+// less that of the whole, so that the bias in R^2 cancels (Richardson 1911). first: the photon has met its first
+// surface that is not smooth; what comes after that is less sharp by far.
 float split_weight(float q, bool first) {
     float scale = first ? FIRST_NARROWER * FIRST_NARROWER : 1.0;
     return q * scale < 0.5 ? 3.0 * scale : q * scale < 1.0 ? -scale : 0.0;

@@ -90,16 +90,16 @@ vec4 tangent_at(Hit hit, vec3 front_normal, bool second_uv) {
 }
 
 // The normal `front_normal` bent by a normal texture; both on the front of the triangle.
-vec3 bent_normal(Hit hit, vec3 front_normal, uint reference, float scale, vec4 coordinates) {
-    if (reference == 0u) return front_normal;
-    bool second_uv = (textures_at(reference - 1u).flags & TEXTURE_SECOND_UV) != 0u;
+vec3 bent_normal(Hit hit, vec3 front_normal, uint texture_number, float scale, vec4 coordinates) {
+    if (texture_number == 0u) return front_normal;
+    bool second_uv = (textures_at(texture_number - 1u).flags & TEXTURE_SECOND_UV) != 0u;
     vec4 tangent = tangent_at(hit, front_normal, second_uv);
     vec3 t = tangent.xyz - front_normal * dot(front_normal, tangent.xyz);
     float length2 = dot(t, t);
     if (tangent.w == 0.0 || length2 == 0.0) return front_normal;
     t *= inversesqrt(length2);
     vec3 b = cross(front_normal, t) * tangent.w;
-    vec3 n = texture_at(reference, coordinates).xyz * 2.0 - 1.0;
+    vec3 n = texture_at(texture_number, coordinates).xyz * 2.0 - 1.0;
     n.xy *= scale;
     return normalize(n.x * t + n.y * b + n.z * front_normal);
 }

@@ -32,11 +32,11 @@ vec4 texel_at(TextureLookup lookup, int x, int y) {
     return c;
 }
 
-// The texture `reference` - 1 at the coordinates of both sets; linear. White where there is none (reference 0).
+// A texture at the coordinates of both sets; linear. texture_number: 1 + index of its TextureLookup; 0: none, white.
 // Bilinear between texel centres, or the nearest one; no mipmaps: pixels are averaged over many samples.
-vec4 texture_at(uint reference, vec4 coordinates) {
-    if (reference == 0u) return vec4(1.0);
-    TextureLookup lookup = textures_at(reference - 1u);
+vec4 texture_at(uint texture_number, vec4 coordinates) {
+    if (texture_number == 0u) return vec4(1.0);
+    TextureLookup lookup = textures_at(texture_number - 1u);
     vec2 uv = (lookup.flags & TEXTURE_SECOND_UV) != 0u ? coordinates.zw : coordinates.xy;
     uv = vec2(dot(lookup.matrix.xy, uv), dot(lookup.matrix.zw, uv)) + lookup.offset;
     uv = vec2(wrap_coordinate(uv.x, lookup.flags & TEXTURE_WRAP_S),

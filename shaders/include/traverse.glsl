@@ -1,7 +1,7 @@
-// Nearest hit of a ray with the 4-wide quantised BVH. Reads nodes and triangles; O(log triangles) steps a ray.
-// The stack holds exactly what this tree can need. Fails only by running out of `steps`, and says so.
-// Written for software Vulkan, where a load of 16 bytes from texels is one call for eight lanes, every branch is run by
-// every lane, and a store to an array is a branch for each lane.
+// Nearest hit of a ray with the 4-wide quantised BVH. SIMD group: the subgroup, the lanes that run together. Reads
+// nodes and triangles; O(log triangles) steps a ray. The stack holds exactly what this tree can need. Fails only by
+// running out of `steps`, and says so. Written for software Vulkan, where a load of 16 bytes from texels is one call
+// for eight lanes, every branch is run by every lane, and a store to an array is a branch for each lane.
 #ifndef TRAVERSE_GLSL
 #define TRAVERSE_GLSL
 
@@ -106,7 +106,7 @@ Traversal begin_traversal(vec3 origin, vec3 direction) {
     vec3 d = mix(direction, mix(vec3(1e-20), vec3(-1e-20), lessThan(direction, vec3(0.0))),
                  lessThan(abs(direction), vec3(1e-20)));
     stack[0] = NO_GROUP;
-    Hit nothing = Hit(3.0e38, 0u, vec2(0.0));
+    Hit nothing = Hit(FAR, 0u, vec2(0.0));
     return Traversal(origin, direction, 1.0 / d, 0u, NO_NODE, NO_GROUP, NO_GROUP, 0u, 0xffffffffu, nothing);
 }
 
@@ -118,6 +118,8 @@ Traversal no_traversal() {
 
 // Where `wants`: takes the nearest waiting child that is not behind the hit into children and slot, and wants no more.
 // Software Vulkan runs a loop once whatever its condition: this one is left at its end and most often runs just once.
+// A macro, because it stands in the innermost loop, where copies of the traversal in and out of a function cost time.
+// It uses the names t, steps, stack, wants, children and slot of traverse().
 #define TAKE_WAITING()                                                                        \
     while (true) {                                                                            \
         bool pops = wants && t.group == NO_GROUP && t.top > 0u;                               \
@@ -227,7 +229,7 @@ void traverse(inout Traversal t, inout int steps, bool independent, bool running
 }
 
 uint found_by(Traversal t) {
-    return t.node != NO_NODE ? TRACE_UNFINISHED : t.hit.t < 3.0e38 ? TRACE_HIT : TRACE_MISS;
+    return t.node != NO_NODE ? TRACE_UNFINISHED : t.hit.t < FAR ? TRACE_HIT : TRACE_MISS;
 }
 
 // origin within the scene's bounds or at them, direction unit. Spends `steps` as traverse() does.

@@ -1,6 +1,6 @@
 #version 460
-// One invocation: the iteration is complete. Reads the number of photons; writes status.completed,
-// .searches, .photons, .stored.
+// One invocation: the iteration is complete. Reads the number of photons; writes status.completed, .searches, .photons,
+// .stored. O(1). Cannot fail.
 #include "include/kernel.glsl"
 #include "include/counters.glsl"
 

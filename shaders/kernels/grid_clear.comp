@@ -1,6 +1,7 @@
 #version 460
-// Zeroes the table of cell counts; each invocation strides over it. Reads how many pixels look for a radius. Writes
-// counters[0 .. grid.entries], and how many work groups of knn there is work for.
+// Zeroes the table of cell counts; any number of invocations, which stride over it. Reads how many pixels look for a
+// radius, and the size of knn's work groups; writes counters[0 .. grid.entries], and how many work groups of knn there
+// is work for. O(entries of the table). Cannot fail.
 #include "include/kernel.glsl"
 #include "include/grid.glsl"
 #include "include/counters.glsl"
@@ -12,7 +13,7 @@ COUNTERS(UPDATES)
 void main() {
     if (blocked(0u)) return;
     if (invocation() == 0u) {
-        uint groups = (status.searches + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x;
+        uint groups = (status.searches + launch.search_group - 1u) / launch.search_group;
         uint rows = groups / MOST_GROUPS + 1u;
         status.search_groups = uvec3((groups + rows - 1u) / rows, rows, 1u);
     }

@@ -1,7 +1,7 @@
 #version 460
 // One invocation a lane of `photons_per_lane` paths: makes their photons compact in the order of paths and bounces, and
-// counts them by cell, for level launch.count of the grid. Reads photons, the slots of the paths and the scanned
-// counts; writes pairs_a (cell, slot) and counters[cell]. O(photons of the lane).
+// counts them by cell, for level launch.level of the grid. Reads photons, the slots of the paths and the scanned
+// counts; writes pairs_a (cell, slot) and counters[cell]. O(photons of the lane). Cannot fail.
 #include "include/kernel.glsl"
 #include "include/grid.glsl"
 #include "include/counters.glsl"
@@ -15,9 +15,9 @@ uint count_at(uint word) { return texelFetch(counters_texels, int(word)).x; }
 
 void main() {
     uint path = invocation() * params.photons_per_lane;
-    if (path >= params.photons || launch.count >= grid.levels || blocked(0u)) return;
-    GridLevel level = grid_level(launch.count);
-    uint first_pair = launch.count * count_at(PHOTON_TOTAL);
+    if (path >= params.photons || launch.level >= grid.levels || blocked(0u)) return;
+    GridLevel level = grid_level(launch.level);
+    uint first_pair = launch.level * count_at(PHOTON_TOTAL);
     uint end = count_at(PATH_COUNTS + min(path + params.photons_per_lane, params.photons));
     uint i = count_at(PATH_COUNTS + path);
     uint path_end = i;  // of the path before

@@ -1,6 +1,7 @@
 #version 460
 // Copies the photons into the order of their cells, so that a row of cells is one run of memory. Reads photons and the
-// sorted pairs; writes sorted, sorted_flux. Invocations stride over the photons.
+// sorted pairs; writes sorted, sorted_flux. Any number of invocations, which stride over the photons. O(photons x
+// levels). Cannot fail.
 #include "include/kernel.glsl"
 #include "include/grid.glsl"
 #include "include/counters.glsl"

@@ -7,6 +7,7 @@
 // levels: begins again when there is.
 #include "include/kernel.glsl"
 #include "include/grid.glsl"
+#include "include/radius_bins.glsl"
 #include "include/sampling.glsl"
 
 #define SEGMENT_COST 2.0   // loop trips that a segment of a row costs, measured
@@ -14,8 +15,6 @@
 #define ENTRY_COST 1.0     // loop trips of the gather that clearing, counting and scanning an entry of the table costs
 #define PHOTON_COST 15.0   // that sorting a photon into a level costs
 #define CELL_PER_RADIUS 1.2  // at which a disc costs least, about
-
-const float LARGEST_FLOAT = 3.402823466e38;
 
 // Cells of the levels, from the finest on.
 struct Plan {
@@ -26,8 +25,6 @@ struct Plan {
 uint lowest_bin, highest_bin;  // of those with pixels
 float pixels_of[RADIUS_BINS];
 float density_of[RADIUS_BINS];  // photons an area
-
-float bin_radius(uint bin) { return exp2((float(bin) + 0.5) * 0.5 - 24.0); }
 
 // So that cells can be counted along an axis.
 float least_cell() {

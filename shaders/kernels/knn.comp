@@ -10,11 +10,8 @@
 #include "include/frame.glsl"
 #include "include/hits.glsl"
 #include "include/pixels.glsl"
-#include "include/rng.glsl"
-#include "include/sampling.glsl"
 #include "include/search.glsl"
 #include "include/split.glsl"
-#include "include/sum.glsl"
 #include "estimators/estimator.glsl"
 
 SEARCHES(READS)

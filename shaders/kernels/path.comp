@@ -1,9 +1,10 @@
 #version 460
-// The path tracer: one invocation a pixel, launch.count paths of it one after the other, so that a SIMD group stays
-// full. Unbiased: every vertex with a lobe of width above 0 asks for one point of the lights, and what the next ray
-// meets counts too; both are weighed by the power heuristic (Veach 1997, section 9.2.4), punctual lights are asked for
-// alone. A ray to a light is stopped by glass. Where light is split (FEATURE_SPLIT) what photons bring is left out;
-// else light of punctual lights by way of delta lobes is missing, which no path finds.
+// The path tracer: one invocation a pixel, launch.paths paths of it one after the other, so that a SIMD group
+// (subgroup) stays full. Unbiased: every vertex with a lobe of width above 0 asks for one point of the lights
+// (next-event estimation), and what the next ray meets counts too (BSDF sampling); both are weighed by the power
+// heuristic (multiple importance sampling; Veach 1997, section 9.2.4), punctual lights are asked for alone. Russian
+// roulette ends paths that bring little. A ray to a light is stopped by glass. Where light is split (FEATURE_SPLIT)
+// what photons bring is left out; else light of punctual lights by way of delta lobes is missing, which no path finds.
 // Reads the scene and the lights; writes image [P], the mean of the launch's paths, and traces. O(paths x bounces x log
 // triangles). Fails by running out of steps: goes on next round.
 #include "include/kernel.glsl"
@@ -145,17 +146,17 @@ void main() {
     TraceState state = new_path(0u, vec3(0.0));
     if (launch.round > 0u) {
         state = traces[pixel];
-        if (state.done >= launch.count) return;
+        if (state.done >= launch.paths) return;
     }
     uint rays = 0u;
     int steps = int(params.step_budget);
-    while (state.done < launch.count) {
+    while (state.done < launch.paths) {
         --steps;
         if (steps < 0) {
             block_after(PASS_TRACE);
             break;
         }
-        uint path = launch.iteration * launch.count + state.done;
+        uint path = launch.iteration * launch.paths + state.done;
         bool shadow = state.light_ray.distance > 0.0;
         float from_eye;
         if ((state.flags & PATH_BOUNCES) == 0u) camera_ray(pixel, path, state.origin, state.direction, from_eye);
@@ -189,6 +190,6 @@ void main() {
         if (state.ended != 0u && state.light_ray.distance == 0.0) end_path(state);
     }
     traces[pixel] = state;
-    if (state.done == launch.count) image[pixel] = state.sum / float(launch.count);
+    if (state.done == launch.paths) image[pixel] = state.sum / float(launch.paths);
     count_rays(rays);
 }

@@ -1,5 +1,6 @@
 #version 460
-// One invocation a pixel: the mean over the completed iterations. Reads film; writes image [P] W m^-2 sr^-1.
+// One invocation a pixel: the mean over the completed iterations. Reads film; writes image [P] W m^-2 sr^-1. O(1).
+// Cannot fail.
 #include "include/kernel.glsl"
 
 FILM(READS)

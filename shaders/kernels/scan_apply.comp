@@ -1,5 +1,7 @@
 #version 460
-// Exclusive scan, step 3 of 3: every block scans itself from the sum of the blocks before it. One invocation a block.
+// Exclusive scan (prefix sum), step 3 of 3: every block scans itself from the sum of the blocks before it. One
+// invocation a block. Reads the scanned sums of blocks; writes the counters in place. O(count / scan_blocks). Cannot
+// fail.
 #include "include/kernel.glsl"
 #include "include/counters.glsl"
 #include "include/scan.glsl"

@@ -1,6 +1,6 @@
 #version 460
-// Exclusive scan, step 2 of 3: one work group scans the block sums in place. Any work group size that divides
-// params.scan_blocks. O(params.scan_blocks / size + size).
+// Exclusive scan (prefix sum), step 2 of 3: one work group scans the block sums in place. Any work group size that
+// divides params.scan_blocks. O(params.scan_blocks / size + size). Cannot fail.
 #include "include/kernel.glsl"
 #include "include/counters.glsl"
 

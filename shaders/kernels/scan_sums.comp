@@ -1,6 +1,7 @@
 #version 460
-// Exclusive scan of counters[offset .. offset + count), step 1 of 3: sums of params.scan_blocks consecutive blocks, one
-// invocation a block, without barriers. O(count / scan_blocks); count < 2^16 scan_blocks.
+// Exclusive scan (prefix sum) of counters[scan_first .. scan_first + scan_count), step 1 of 3: sums of
+// params.scan_blocks consecutive blocks, one invocation a block, without barriers. Reads the counters; writes the sums
+// behind them. O(scan_count / scan_blocks); scan_count < 2^16 scan_blocks. Cannot fail.
 #include "include/kernel.glsl"
 #include "include/counters.glsl"
 #include "include/scan.glsl"

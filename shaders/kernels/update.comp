@@ -1,12 +1,12 @@
 #version 460
 // One invocation a pixel: adds the iteration's estimate to the film with the radius that gathered it, then lets the
-// estimator decide the next radius. Reads hits, gathered; writes film, pixels, tally and, where launch.offset is 1,
-// the histograms by radius from which the next grid is planned. O(rings x sectors).
-// A contribution that is not finite is dropped and counted in status.invalid.
+// estimator decide the next radius. Reads hits, gathered; writes film, pixels, tally and, before the grid is planned
+// anew, the histograms by radius that its plan is made from. O(rings x sectors).
+// Cannot fail: a contribution that is not finite is dropped and counted in status.invalid.
 #include "include/kernel.glsl"
 #include "include/hits.glsl"
 #include "include/pixels.glsl"
-#include "include/rng.glsl"
+#include "include/radius_bins.glsl"
 #include "include/sampling.glsl"
 #include "include/sum.glsl"
 #include "estimators/estimator.glsl"
@@ -40,9 +40,8 @@ void main() {
         update(pixel, diffuse, diffuse ? sum.count : 0u, state);
         state.radius2 = max(state.radius2, RADIUS2_MIN);
         pixels[pixel] = state;
-        if (launch.offset == 1u && diffuse) {
-            int bin = int(floor(log2(state.radius2))) + 48;  // 2 (log2 R + 24)
-            bin = clamp(bin, 0, RADIUS_BINS - 1);
+        if (launch.plans_next == 1u && diffuse) {
+            int bin = radius_bin(state.radius2);
             atomicAdd(status.radius_histogram[bin], 1u);
             uint before = atomicAdd(status.photon_histogram[bin], sum.count);
             if (before + sum.count < before) atomicAdd(status.photon_histogram_high[bin], 1u);

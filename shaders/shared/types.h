@@ -15,10 +15,15 @@ using glm::vec3;
 using glm::vec4;
 using uint = std::uint32_t;
 #define VKCPPM_CONST inline constexpr
+#define VKCPPM_ZERO = 0
 #else
 #extension GL_EXT_scalar_block_layout : require
 #define VKCPPM_CONST const
+#define VKCPPM_ZERO
 #endif
+
+#define LARGEST_FLOAT 3.402823466e38f
+#define FAR 3.0e38f  // stands for infinity, where a comparison or a ratio is to stay a number
 
 // A struct whose members are the rows of FIELDS_<struct>, so that kernels that read it from texels decode it by them
 // (include/records.glsl):
@@ -142,8 +147,8 @@ FEATURE_TABLE(FEATURE_BIT_OF_MATERIAL, FEATURE_BIT, FEATURE_BIT)
 // Top bit of TriangleShading::material: the three normals are the geometric normal.
 #define SHADING_FLAT 0x80000000u
 
-// 4-wide node, 64 bytes, read as 4 uvec4 texels. Box of child c on axis a: origin[a] + 2^(exponent[a]-127) * q[a] byte
-// c.
+// 4-wide node, 64 bytes, read as 4 uvec4 texels. Box of child c on axis a: origin[a] + 2^(exponent[a] - 127) * byte c of
+// q[a].
 struct BvhNode {
     vec3 origin;
     uint exponents;    // biased exponents of the cell size, x | y << 8 | z << 16; bit 24 + c: there is a child c
@@ -217,9 +222,9 @@ RECORD(TextureLookup)
 #define FIELDS_Light(FIELD, ARRAY, OPTIONAL) \
     FIELD(vec3, position)      /* triangle: v0; point, spot: position */ \
     FIELD(uint, kind)          /* LIGHT_* */ \
-    FIELD(vec3, e1)            /* triangle: edge; spot, directional: unit direction of travel */ \
+    FIELD(vec3, e1)            /* triangle: edge; others: axis_of (include/light.glsl) */ \
     FIELD(float, keep)         /* alias table: probability to keep this entry */ \
-    FIELD(vec3, e2)            /* triangle: edge; spot: (1 - cos inner, 1 - cos outer, -) */ \
+    FIELD(vec3, e2)            /* triangle: edge; spot: cones_of, 1 - cos of the inner and of the outer */ \
     FIELD(uint, alias_entry)   /* alias table: the other entry */ \
     /* W (frame-scaled); directional, environment: into the scene; environment: the mean channel alone, times \
        the colour of the pixel drawn and entry_area over its mean in the pixel */ \
@@ -286,7 +291,7 @@ RECORD(HitSurface)
 #define PATH_MEDIUM_SHIFT 16u
 #define PATH_NO_MEDIUM 0xffffu  // also the largest number of materials
 
-// A ray that asks whether a light is seen.
+// A ray that asks whether a light is seen (next-event estimation).
 struct LightRay {
     vec3 origin;
     float distance;    // left to the light; 0: there is no ray
@@ -330,9 +335,7 @@ struct SearchState {
 #define FIELDS_PixelState(FIELD, ARRAY, OPTIONAL) \
     FIELD(float, radius2)      /* R^2 in force, 0 before the pixel first saw a diffuse surface */ \
     FIELD(uint, seeded)        /* 1 once the k-th nearest photon gave the radius; 0: radius2 is the cap */ \
-    /* sppm: N of Hachisuka and Jensen; sppm-kz, appm: iterations since the radius was seeded; ftest: \
-       iterations since the last rejection */ \
-    FIELD(float, count) \
+    FIELD(float, count)        /* what the estimator's rule counts: its file in shaders/estimators says what */ \
     FIELD(uint, total)         /* photons accepted since the last reset of the tally; stays at its largest value */ \
     FIELD(float, batch)        /* B, photons to see before a test */ \
     FIELD(uint, rejections) \
@@ -383,7 +386,7 @@ struct TraceState {
     vec3 origin;
     uint flags;            // bounces | PATH_*
     vec3 direction;
-    float density;         // 1/sr, with which the direction was drawn; DELTA after the camera and delta lobes
+    float density;         // pdf of the direction, 1/sr; DELTA after the camera and delta lobes
     vec3 throughput;
     float distance;        // since the last vertex
     vec3 radiance;         // of this path so far
@@ -411,12 +414,12 @@ struct Grid {
     uvec4 dims[GRID_LEVELS];          // cells an axis; w: 0 dense rows, else mask of the hash table
     float cell[GRID_LEVELS];          // side
     float inverse_cell[GRID_LEVELS];
-    float reach[GRID_LEVELS];         // largest radius that looks here; the largest float from the last in use on
+    float reach[GRID_LEVELS];         // largest radius that looks here; LARGEST_FLOAT from the last in use on
     uint first[GRID_LEVELS];          // its first entry of the table of cell starts
     uint entries;                     // of that table, in use: at most params.cells
 };
 
-#define RADIUS_BINS 64     // histogram of log2 R: bin = 2 * (log2 R + 24), clamped
+#define RADIUS_BINS 64     // histogram of log2 R: include/radius_bins.glsl
 
 struct Status {
     uint blocked;      // PASS_* bits: passes after these do nothing until the host has seen to them
@@ -482,13 +485,32 @@ struct Params {
     vec2 sector_centre[MAX_SECTORS];     // unit vectors at pi (2 s + 1) / n_s
 };
 
-// Per launch.
+// Regions of the counter buffer, in words. The table of cell starts comes first: the searches index it directly.
+// cell starts [cells + 1] | photons of each path, then their offsets [photons + 1] | slot of the first of each
+// [photons] | radix histogram [digits x columns] | sums of scan blocks [scan_blocks]. p: Params; bits: SPEC_DIGIT_BITS.
+#define COUNTERS_OF_CELLS 0u
+#define COUNTERS_OF_PATHS(p) ((p).cells + 1u)
+#define COUNTER_OF_PHOTONS(p) (COUNTERS_OF_PATHS(p) + (p).photons)
+#define COUNTERS_OF_SLOTS(p) (COUNTER_OF_PHOTONS(p) + 1u)
+#define COUNTERS_OF_RADIX(p) (COUNTERS_OF_SLOTS(p) + (p).photons)
+#define COUNTERS_OF_SCAN(p, bits) (COUNTERS_OF_RADIX(p) + ((p).sort_lanes << (bits)))
+#define COUNTERS_IN_ALL(p, bits) (COUNTERS_OF_SCAN(p, bits) + (p).scan_blocks)
+
+// Per launch: push constants. Each word is of the kernels named, and 0 for the others.
 struct Launch {
-    uint iteration;
-    uint round;        // of a resumable pass
-    uint last_round;   // 1: unfinished work blocks the passes that follow
-    uint offset;       // scan: first element; radix: shift of the digit; update: 1 counts the radii
-    uint count;        // scan: elements; path: paths a pixel; grid_key: level; radix: 0 reads pairs_a, 1 pairs_b
+    uint iteration VKCPPM_ZERO;
+    uint round VKCPPM_ZERO;        // of a resumable pass
+    uint last_round VKCPPM_ZERO;   // 1: unfinished work blocks the passes that follow
+    uint paths VKCPPM_ZERO;        // path: paths a pixel
+    uint search_group VKCPPM_ZERO; // grid_clear: invocations a work group of knn
+    uint level VKCPPM_ZERO;        // grid_key: of the grid
+    uint scan_first VKCPPM_ZERO;   // scans: the first counter
+    uint scan_count VKCPPM_ZERO;   //   and how many
+    uint digit_shift VKCPPM_ZERO;  // radix: bits below the digit
+    uint reads_b VKCPPM_ZERO;      // radix: 1: from pairs_b to pairs_a, 0: from pairs_a to pairs_b
+    uint plans_next VKCPPM_ZERO;   // update: 1: the next grid is planned, the radii are counted for it
+    uint argument VKCPPM_ZERO;     // kernels of tests and benchmarks: their file says what
+    uint items VKCPPM_ZERO;        //   and how many they go over
 };
 
 #ifdef __cplusplus

@@ -14,7 +14,7 @@
 #include "kernels/probe.h"
 #include "oracle/embree.h"
 #include "render/render.h"
-#include "render/scene_buffers.h"
+#include "render/scene_on_device.h"
 #include "vk/kernel.h"
 
 namespace vkcppm::bench {
@@ -114,9 +114,12 @@ public:
 private:
     Seconds run(const Kernel& kernel, std::uint64_t invocations) {
         commands_.begin();
-        commands_.launch(
-            kernel, invocations,
-            {.iteration = 0, .round = rays_per_lane, .last_round = 0, .offset = params_.step_budget, .count = count_});
+        commands_.launch(kernel, invocations,
+                         {.iteration = 0,
+                          .round = rays_per_lane,
+                          .last_round = 0,
+                          .argument = params_.step_budget,
+                          .items = count_});
         std::vector<Timing> timings;
         const Seconds host = time_of([&] { timings = commands_.finish(); });
         return {timings.front().seconds, host.cpu};

@@ -1,6 +1,6 @@
 #version 460
 // Nearest hits of rays. The lanes of a SIMD group share launch.round rays for each of them, and one takes the next ray
-// as soon as it is done with its own, as shaders/kernels/photon.comp does. launch.offset: steps that a lane may take in
+// as soon as it is done with its own, as shaders/kernels/photon.comp does. launch.argument: steps that a lane may take in
 // all.
 #include "include/kernel.glsl"
 #include "include/scene.glsl"
@@ -12,9 +12,9 @@ layout(binding = PROBE_OUTPUT, scalar) writeonly buffer OutputBlock { RayOutput 
 
 void main() {
     uint share = gl_SubgroupSize * launch.round;
-    uint next = min((gl_WorkGroupID.x * gl_NumSubgroups + gl_SubgroupID) * share, launch.count);
-    uint end = min(next + share, launch.count);
-    int steps = int(launch.offset);
+    uint next = min((gl_WorkGroupID.x * gl_NumSubgroups + gl_SubgroupID) * share, launch.items);
+    uint end = min(next + share, launch.items);
+    int steps = int(launch.argument);
     Traversal traversal = no_traversal();
     uint ray = 0u;
     bool running = true;

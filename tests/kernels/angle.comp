@@ -10,5 +10,5 @@ layout(binding = PROBE_OUTPUT, scalar) writeonly buffer OutputBlock { float outp
 
 void main() {
     uint i = invocation();
-    if (i < launch.count) outputs[i] = angle_of(inputs[i].y, inputs[i].x);
+    if (i < launch.items) outputs[i] = angle_of(inputs[i].y, inputs[i].x);
 }

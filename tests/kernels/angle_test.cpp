@@ -29,7 +29,7 @@ protected:
         probe_.input(PROBE_INPUT, points);
         probe_.output<float>(PROBE_OUTPUT, points.size());
         probe_.run(points.size(),
-                   {.iteration = 0, .round = 0, .last_round = 0, .offset = 0, .count = std::uint32_t(points.size())});
+                   {.iteration = 0, .last_round = 0, .argument = 0, .items = std::uint32_t(points.size())});
         return probe_.result<float>(PROBE_OUTPUT, points.size());
     }
 

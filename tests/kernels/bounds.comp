@@ -9,6 +9,6 @@ layout(binding = PROBE_OUTPUT, scalar) writeonly buffer OutputBlock { vec3 origi
 
 void main() {
     uint i = invocation();
-    if (i >= launch.count) return;
+    if (i >= launch.items) return;
     origins[i] = enter_bounds(rays[i].origin, rays[i].direction);
 }

@@ -46,8 +46,7 @@ TEST_F(BoundsEntry, RaysStartBeforeTheBoxAndNearIt) {
         probe.input(Binding::params, std::vector{params});
         probe.input(PROBE_INPUT, rays);
         probe.output<glm::vec3>(PROBE_OUTPUT, rays.size());
-        probe.run(rays.size(),
-                  {.iteration = 0, .round = 0, .last_round = 0, .offset = 0, .count = std::uint32_t(rays.size())});
+        probe.run(rays.size(), {.iteration = 0, .last_round = 0, .argument = 0, .items = std::uint32_t(rays.size())});
         const auto starts = probe.result<glm::vec3>(PROBE_OUTPUT, rays.size());
         std::size_t moved = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {

@@ -1,6 +1,6 @@
 #version 460
 // Lobes as they are chosen, followed and gathered on: all from one direction onto one surface.
-// launch.offset: 0: `incoming` is given; else a lobe is chosen by u.z and followed.
+// launch.argument: 0: `incoming` is given; else a lobe is chosen by u.z and followed.
 #include "include/kernel.glsl"
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
@@ -17,13 +17,13 @@ layout(binding = PROBE_OUTPUT, scalar) writeonly buffer OutputBlock { BsdfOutput
 
 void main() {
     uint i = invocation();
-    if (i >= launch.count) return;
+    if (i >= launch.items) return;
     SurfaceMaterial material = materials_at(view.material);
     Surface surface = Surface(vec3(0.0), view.geometric, view.normal, view.clearcoat_normal, 0.0, view.front != 0u,
                               view.material);
     Bsdf bsdf = bsdf_of(material, material.ior, surface.front);
     BsdfOutput result = BsdfOutput(LOBE_NONE, 1.0, inputs[i].incoming, vec3(0.0), 0.0, 0.0, vec3(0.0), vec3(0.0));
-    if (launch.offset != 0u) {
+    if (launch.argument != 0u) {
         result.lobe = view.lobe;
         if (view.lobe == LOBE_NONE) {
             float inverse_probability;

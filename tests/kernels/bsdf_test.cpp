@@ -175,8 +175,8 @@ protected:
         probe_.run(inputs.size(), {.iteration = 0,
                                    .round = 0,
                                    .last_round = 0,
-                                   .offset = follow ? 1u : 0u,
-                                   .count = std::uint32_t(inputs.size())});
+                                   .argument = follow ? 1u : 0u,
+                                   .items = std::uint32_t(inputs.size())});
         return probe_.result<gpu::BsdfOutput>(PROBE_OUTPUT, inputs.size());
     }
 

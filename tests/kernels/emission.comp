@@ -17,7 +17,7 @@ layout(binding = PROBE_OUTPUT, scalar) writeonly buffer OutputBlock { EmitOutput
 
 void main() {
     uint i = invocation();
-    if (i >= launch.count) return;
+    if (i >= launch.items) return;
     EmitOutput start;
     start.kind = emit(inputs[i].bits, inputs[i].v, start.origin, start.direction, start.power);
     start.radiance = vec3(0.0);

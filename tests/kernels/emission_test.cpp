@@ -258,7 +258,7 @@ protected:
         probe.input(PROBE_INPUT, inputs);
         probe.output<gpu::EmitOutput>(PROBE_OUTPUT, inputs.size());
         probe.run(inputs.size(),
-                  {.iteration = 0, .round = 0, .last_round = 0, .offset = 0, .count = std::uint32_t(inputs.size())});
+                  {.iteration = 0, .last_round = 0, .argument = 0, .items = std::uint32_t(inputs.size())});
         return probe.result<gpu::EmitOutput>(PROBE_OUTPUT, inputs.size());
     }
 };

@@ -53,8 +53,7 @@ std::vector<std::vector<double>> numbers_of(const Rig& rig, std::uint32_t iterat
     Probe probe("rng", rng_words);
     probe.input(PROBE_INPUT, keys);
     probe.output<gpu::RngSample>(PROBE_OUTPUT, keys.size());
-    probe.run(keys.size(),
-              {.iteration = 0, .round = 0, .last_round = 0, .offset = 0, .count = std::uint32_t(keys.size())});
+    probe.run(keys.size(), {.iteration = 0, .last_round = 0, .argument = 0, .items = std::uint32_t(keys.size())});
     const auto samples = probe.result<gpu::RngSample>(PROBE_OUTPUT, keys.size());
     std::vector<std::vector<double>> numbers(rig.pixels());
     for (std::size_t i = 0; i < samples.size(); ++i) numbers[i / dimensions].push_back(samples[i].stratified);

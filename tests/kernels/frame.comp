@@ -9,7 +9,7 @@ layout(binding = PROBE_OUTPUT, scalar) writeonly buffer OutputBlock { FrameSampl
 
 void main() {
     uint i = invocation();
-    if (i >= launch.count) return;
+    if (i >= launch.items) return;
     vec3 n = directions[i];
     uint word = pack_direction(n);
     vec3 t, b;

@@ -30,9 +30,8 @@ protected:
     std::vector<gpu::FrameSample> sample(const std::vector<glm::vec3>& directions) {
         probe_.input(PROBE_INPUT, directions);
         probe_.output<gpu::FrameSample>(PROBE_OUTPUT, directions.size());
-        probe_.run(
-            directions.size(),
-            {.iteration = 0, .round = 0, .last_round = 0, .offset = 0, .count = std::uint32_t(directions.size())});
+        probe_.run(directions.size(),
+                   {.iteration = 0, .last_round = 0, .argument = 0, .items = std::uint32_t(directions.size())});
         return probe_.result<gpu::FrameSample>(PROBE_OUTPUT, directions.size());
     }
 

@@ -189,7 +189,7 @@ TEST_F(GridOrder, ExclusiveScanOfAnyRange) {
         std::vector<std::uint32_t> values(words);
         for (auto& value : values) value = random() % 200000u;  // the largest sums wrap, here as there
         rig.integrator.buffer(Binding::counters).upload(values);
-        const gpu::Launch launch{.iteration = 0, .round = 0, .last_round = 1, .offset = offset, .count = asked};
+        const gpu::Launch launch{.iteration = 0, .last_round = 1, .scan_first = offset, .scan_count = asked};
         rig.integrator.run_kernel(KernelId::scan_sums, 4096, launch);
         rig.integrator.run_kernel(KernelId::scan_blocks, 64, launch);
         rig.integrator.run_kernel(KernelId::scan_apply, 4096, launch);

@@ -71,6 +71,8 @@ BLOCK(FIRST + 20, TextureLookupBlock, TextureLookup, texture_lookups)
 BLOCK(FIRST + 21, HitSurfaceBlock, HitSurface, hit_surfaces)
 BLOCK(FIRST + 22, TraceStateBlock, TraceState, trace_states)
 BLOCK(FIRST + 23, LightRayBlock, LightRay, light_rays)
+BLOCK(FIRST + 24, EyeStateBlock, EyeState, eye_states)
+BLOCK(FIRST + 25, SearchStateBlock, SearchState, search_states)
 
 void main() {
     if (gl_GlobalInvocationID.x != 0u) return;
@@ -98,6 +100,8 @@ void main() {
     ROUND_TRIP(HitSurface, hit_surfaces, MEMBERS_HIT_SURFACE)
     ROUND_TRIP(TraceState, trace_states, MEMBERS_TRACE_STATE)
     ROUND_TRIP(LightRay, light_rays, MEMBERS_LIGHT_RAY)
+    ROUND_TRIP(EyeState, eye_states, MEMBERS_EYE_STATE)
+    ROUND_TRIP(SearchState, search_states, MEMBERS_SEARCH_STATE)
     BUMP(Params, params, params_array[4], MEMBERS_PARAMS)
     BUMP(Launch, launch, launches[4], MEMBERS_LAUNCH)
 }

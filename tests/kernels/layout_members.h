@@ -27,8 +27,8 @@
     X(photons) X(seen) X(statistic) X(radius2_low) X(count_low) X(unused)
 #define MEMBERS_AOVS X(albedo) X(normal) X(depth) X(hits) X(albedo_low) X(normal_low) X(depth_low)
 #define MEMBERS_FILM X(sum) X(low)
-#define MEMBERS_PATH_STATE X(origin) X(path) X(direction) X(memory) X(power) X(stored) X(power0) X(begin) X(next)
-#define MEMBERS_TRACE_STATE X(origin) X(memory) X(direction) X(density) X(throughput) X(distance) X(radiance) X(done) \
+#define MEMBERS_PATH_STATE X(origin) X(path) X(direction) X(flags) X(power) X(stored) X(power0) X(begin) X(next)
+#define MEMBERS_TRACE_STATE X(origin) X(flags) X(direction) X(density) X(throughput) X(distance) X(radiance) X(done) \
     X(sum) X(ended) X(light_ray)
 #define MEMBERS_CURSOR X(cell) X(photon)
 #define MEMBERS_GRID X(origin) X(levels) X(dims) X(cell) X(inverse_cell) X(reach) X(first) X(entries)
@@ -40,4 +40,8 @@
     X(bounds_high) X(photons_per_lane) X(photon_lanes) X(photon_capacity) X(bounds_radius) X(max_depth) X(light_count) X(near_lights) X(light_power) X(environment) \
     X(lens_radius) X(focus_distance) X(start) X(step_budget) X(knn) X(radius_cap) X(radius_floor) X(footprint_cap) X(inverse_paths) X(flux_unit) X(alpha) X(k) X(beta) \
     X(cells) X(grid_levels) X(most_levels) X(sort_lanes) X(scan_blocks) X(threshold) X(sector_edge) X(sector_centre)
-#define MEMBERS_LAUNCH X(iteration) X(round) X(last_round) X(offset) X(count)
+#define MEMBERS_EYE_STATE X(origin) X(flags) X(direction) X(followed) X(throughput) X(leg) X(emission) X(distance) \
+    X(end) X(light_ray)
+#define MEMBERS_SEARCH_STATE X(largest) X(largest_index) X(radius) X(kept)
+#define MEMBERS_LAUNCH X(iteration) X(round) X(last_round) X(paths) X(search_group) X(level) X(scan_first) \
+    X(scan_count) X(digit_shift) X(reads_b) X(plans_next) X(argument) X(items)

@@ -51,6 +51,8 @@ VISITOR(Aovs, MEMBERS_AOVS)
 VISITOR(Film, MEMBERS_FILM)
 VISITOR(PathState, MEMBERS_PATH_STATE)
 VISITOR(TraceState, MEMBERS_TRACE_STATE)
+VISITOR(EyeState, MEMBERS_EYE_STATE)
+VISITOR(SearchState, MEMBERS_SEARCH_STATE)
 VISITOR(Cursor, MEMBERS_CURSOR)
 VISITOR(Grid, MEMBERS_GRID)
 VISITOR(Status, MEMBERS_STATUS)
@@ -112,7 +114,7 @@ protected:
     F(1, TriangleGeometry) F(2, TriangleShading) F(3, SurfaceMaterial) F(4, Light) F(5, Photon) F(6, PhotonFlux)      \
         F(7, HitPosition) F(8, HitWeight) F(9, HitEmission) F(10, Gathered) F(11, PixelState) F(12, Aovs) F(13, Film) \
             F(14, PathState) F(15, Cursor) F(16, Grid) F(17, Status) F(18, Params) F(19, Launch)                      \
-                F(20, TextureLookup) F(21, HitSurface) F(22, TraceState) F(23, LightRay)
+                F(20, TextureLookup) F(21, HitSurface) F(22, TraceState) F(23, LightRay) F(24, EyeState) F(25, SearchState)
 // clang-format on
 
 TEST_F(Layout, EveryMemberStandsWhereTheHostPutsIt) {

@@ -9,7 +9,7 @@ layout(binding = PROBE_OUTPUT, scalar) writeonly buffer OutputBlock { RngSample 
 
 void main() {
     uint i = invocation();
-    if (i >= launch.count) return;
+    if (i >= launch.items) return;
     RngKey k = keys[i];
     samples[i] = RngSample(pcg4d(uvec4(k.seed, k.iteration, k.stream, k.path)),
                            random4(k.seed, k.iteration, k.stream, k.path, k.dimension),

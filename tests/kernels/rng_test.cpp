@@ -31,8 +31,7 @@ protected:
     std::vector<gpu::RngSample> draw(const std::vector<gpu::RngKey>& keys) {
         probe_.input(PROBE_INPUT, keys);
         probe_.output<gpu::RngSample>(PROBE_OUTPUT, keys.size());
-        probe_.run(keys.size(),
-                   {.iteration = 0, .round = 0, .last_round = 0, .offset = 0, .count = std::uint32_t(keys.size())});
+        probe_.run(keys.size(), {.iteration = 0, .last_round = 0, .argument = 0, .items = std::uint32_t(keys.size())});
         return probe_.result<gpu::RngSample>(PROBE_OUTPUT, keys.size());
     }
 

@@ -15,7 +15,7 @@ layout(binding = PROBE_OUTPUT, scalar) writeonly buffer OutputBlock { ScatterOut
 
 void main() {
     uint i = invocation();
-    if (i >= launch.count) return;
+    if (i >= launch.items) return;
     ScatterInput s = inputs[i];
     SurfaceMaterial material = materials_at(s.material);
     Surface surface = Surface(vec3(0.0), s.geometric, s.normal, s.normal, 0.0, s.front != 0u, s.material);

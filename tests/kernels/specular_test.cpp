@@ -78,7 +78,7 @@ protected:
         probe_.input(PROBE_INPUT, inputs);
         probe_.output<gpu::ScatterOutput>(PROBE_OUTPUT, inputs.size());
         probe_.run(inputs.size(),
-                   {.iteration = 0, .round = 0, .last_round = 0, .offset = 0, .count = std::uint32_t(inputs.size())});
+                   {.iteration = 0, .last_round = 0, .argument = 0, .items = std::uint32_t(inputs.size())});
         return probe_.result<gpu::ScatterOutput>(PROBE_OUTPUT, inputs.size());
     }
 

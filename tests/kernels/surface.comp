@@ -1,5 +1,5 @@
 #version 460
-// Surfaces that rays meet, and where rays that leave them start. launch.offset: steps that a ray may take.
+// Surfaces that rays meet, and where rays that leave them start. launch.argument: steps that a ray may take.
 #include "include/kernel.glsl"
 #include "include/frame.glsl"
 #include "include/scene.glsl"
@@ -13,8 +13,8 @@ layout(binding = PROBE_OUTPUT, scalar) writeonly buffer OutputBlock { SurfaceOut
 
 void main() {
     uint i = invocation();
-    if (i >= launch.count) return;
-    int steps = int(launch.offset);
+    if (i >= launch.items) return;
+    int steps = int(launch.argument);
     vec3 direction = rays[i].direction;
     Hit hit;
     uint found = trace(rays[i].origin, direction, steps, hit);

@@ -64,7 +64,7 @@ TEST_F(SurfaceAtHit, LiesOnItsPlaneAndFacesTheRay) {
         probe.input(PROBE_INPUT, rays);
         probe.output<gpu::SurfaceOutput>(PROBE_OUTPUT, rays.size());
         probe.run(rays.size(),
-                  {.iteration = 0, .round = 0, .last_round = 0, .offset = 7000, .count = std::uint32_t(rays.size())});
+                  {.iteration = 0, .last_round = 0, .argument = 7000, .items = std::uint32_t(rays.size())});
         const auto outputs = probe.result<gpu::SurfaceOutput>(PROBE_OUTPUT, rays.size());
 
         std::size_t hits = 0, smooth = 0, backs = 0, turned = 0;

@@ -14,10 +14,10 @@ layout(binding = PROBE_OUTPUT, scalar) writeonly buffer OutputBlock { TextureOut
 
 void main() {
     uint i = invocation();
-    if (i >= launch.count) return;
+    if (i >= launch.items) return;
     TextureInput at = inputs[i];
     TextureOutput result;
-    if (launch.offset == 0u) {
+    if (launch.argument == 0u) {
         result.value = texture_at(at.texture, at.coordinates);
     } else {
         Hit hit = Hit(0.0, at.triangle, at.barycentric);

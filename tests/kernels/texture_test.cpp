@@ -69,8 +69,8 @@ protected:
         probe.run(inputs.size(), {.iteration = 0,
                                   .round = 0,
                                   .last_round = 0,
-                                  .offset = surfaces ? 1u : 0u,
-                                  .count = std::uint32_t(inputs.size())});
+                                  .argument = surfaces ? 1u : 0u,
+                                  .items = std::uint32_t(inputs.size())});
         return probe.result<gpu::TextureOutput>(PROBE_OUTPUT, inputs.size());
     }
 };

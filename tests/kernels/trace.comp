@@ -1,5 +1,5 @@
 #version 460
-// Nearest hits of rays. launch.offset: steps that a ray may take.
+// Nearest hits of rays. launch.argument: steps that a ray may take.
 #include "include/kernel.glsl"
 #include "include/scene.glsl"
 #include "include/traverse.glsl"
@@ -10,9 +10,9 @@ layout(binding = PROBE_OUTPUT, scalar) writeonly buffer OutputBlock { RayOutput 
 
 void main() {
     uint i = invocation();
-    if (i >= launch.count) return;
-    int steps = int(launch.offset);
+    if (i >= launch.items) return;
+    int steps = int(launch.argument);
     Hit hit;
     uint found = trace(rays[i].origin, rays[i].direction, steps, hit);
-    outputs[i] = RayOutput(found, hit.t, hit.triangle, hit.barycentric, int(launch.offset) - steps);
+    outputs[i] = RayOutput(found, hit.t, hit.triangle, hit.barycentric, int(launch.argument) - steps);
 }

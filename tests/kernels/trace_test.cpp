@@ -130,9 +130,8 @@ protected:
         probe.input(Binding::triangles, flat.triangles);
         probe.input(PROBE_INPUT, rays);
         probe.output<gpu::RayOutput>(PROBE_OUTPUT, rays.size());
-        probe.run(
-            rays.size(),
-            {.iteration = 0, .round = 0, .last_round = 0, .offset = step_budget, .count = std::uint32_t(rays.size())});
+        probe.run(rays.size(),
+                  {.iteration = 0, .last_round = 0, .argument = step_budget, .items = std::uint32_t(rays.size())});
         return probe.result<gpu::RayOutput>(PROBE_OUTPUT, rays.size());
     }
 };
@@ -403,7 +402,7 @@ TEST_F(Trace, OutOfStepsSaysSo) {
     probe.output<gpu::RayOutput>(PROBE_OUTPUT, rays.size());
     const auto run = [&](std::uint32_t steps) {
         probe.run(rays.size(),
-                  {.iteration = 0, .round = 0, .last_round = 0, .offset = steps, .count = std::uint32_t(rays.size())});
+                  {.iteration = 0, .last_round = 0, .argument = steps, .items = std::uint32_t(rays.size())});
         return probe.result<gpu::RayOutput>(PROBE_OUTPUT, rays.size());
     };
     const auto whole = run(step_budget);

@@ -20,7 +20,7 @@
 #include "oracle/estimator.h"
 #include "render/estimators.h"
 #include "render/kernels.h"
-#include "render/scene_buffers.h"
+#include "render/scene_on_device.h"
 #include "support/device/gpu.h"
 #include "support/device/rig.h"
 #include "support/names.h"
@@ -143,8 +143,7 @@ TEST_P(Update, DecidesAsTheReference) {
         rig.integrator.buffer(Binding::gathered).upload(gathered);
         rig.integrator.buffer(Binding::hit_position).upload(hits);
         rig.integrator.buffer(Binding::tally).upload(tally);
-        rig.integrator.run_kernel(KernelId::update, pixels,
-                                  {.iteration = 0, .round = 0, .last_round = 1, .offset = 0, .count = 0});
+        rig.integrator.run_kernel(KernelId::update, pixels, {.iteration = 0, .last_round = 1});
         const auto after = rig.all<gpu::PixelState>(Binding::pixels);
         const auto tally_after = rig.all<std::uint32_t>(Binding::tally);
 
@@ -260,8 +259,7 @@ TEST_F(FilmSum, AddsTheEstimateWithTheRadiusBeforeTheUpdate) {
     rig.integrator.buffer(Binding::hit_emission).upload(emissions);
     rig.integrator.buffer(Binding::gathered).upload(gathered);
     rig.integrator.buffer(Binding::pixels).upload(states);
-    rig.integrator.run_kernel(KernelId::update, rig.pixels(),
-                              {.iteration = 0, .round = 0, .last_round = 1, .offset = 1, .count = 0});
+    rig.integrator.run_kernel(KernelId::update, rig.pixels(), {.iteration = 0, .last_round = 1, .plans_next = 1});
     const auto after = rig.all<gpu::Film>(Binding::film);
     const auto pixels = rig.all<gpu::PixelState>(Binding::pixels);
     for (std::size_t i = 0; i < rig.pixels(); ++i) {
@@ -327,8 +325,7 @@ TEST_F(FilmSum, ManyAdditionsDoNotStagnate) {
     Commands commands(plain_device(), bindings, 1);
     const auto run = [&](std::uint64_t launches) {
         commands.begin();
-        for (std::uint64_t i = 0; i < launches; ++i)
-            commands.launch(kernel, count, {.iteration = 0, .round = 0, .last_round = 1, .offset = 0, .count = 0});
+        for (std::uint64_t i = 0; i < launches; ++i) commands.launch(kernel, count, {.iteration = 0, .last_round = 1});
         commands.finish();
     };
     set(first);

@@ -9,7 +9,7 @@ layout(binding = PROBE_OUTPUT, scalar) writeonly buffer OutputBlock { WarpOutput
 
 void main() {
     uint i = invocation();
-    if (i >= launch.count) return;
+    if (i >= launch.items) return;
     vec2 u = inputs[i].u;
     outputs[i] = WarpOutput(sample_cosine(u), sample_triangle(u), sample_disc(u), sample_azimuth(1.0 - 2.0 * u.x, u.y),
                             1.0 - sample_spot_versine(1.0 - inputs[i].inner, 1.0 - inputs[i].outer, u.x));

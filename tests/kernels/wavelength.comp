@@ -10,8 +10,8 @@ layout(binding = PROBE_OUTPUT, scalar) writeonly buffer OutputBlock { Wavelength
 
 void main() {
     uint i = invocation();
-    if (i >= launch.count) return;
+    if (i >= launch.items) return;
     WavelengthInput s = inputs[i];
-    outputs[i] = WavelengthOutput(wavelength_of(launch.offset, i), wavelength_weight(s.wavelength),
+    outputs[i] = WavelengthOutput(wavelength_of(launch.argument, i), wavelength_weight(s.wavelength),
                                   index_at(s.ior, s.cauchy, s.wavelength));
 }

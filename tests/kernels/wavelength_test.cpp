@@ -27,9 +27,8 @@ protected:
         probe_.input(Binding::params, std::vector{params});
         probe_.input(PROBE_INPUT, inputs);
         probe_.output<gpu::WavelengthOutput>(PROBE_OUTPUT, inputs.size());
-        probe_.run(
-            inputs.size(),
-            {.iteration = 3, .round = 0, .last_round = 0, .offset = stream, .count = std::uint32_t(inputs.size())});
+        probe_.run(inputs.size(),
+                   {.iteration = 3, .last_round = 0, .argument = stream, .items = std::uint32_t(inputs.size())});
         return probe_.result<gpu::WavelengthOutput>(PROBE_OUTPUT, inputs.size());
     }
 

@@ -73,8 +73,7 @@ protected:
         probe.input(Binding::triangles, flat.triangles);
         probe.input(PROBE_INPUT, rays);
         probe.output<gpu::RayOutput>(PROBE_OUTPUT, count);
-        probe.run(count,
-                  {.iteration = 0, .round = 0, .last_round = 0, .offset = step_budget, .count = std::uint32_t(count)});
+        probe.run(count, {.iteration = 0, .last_round = 0, .argument = step_budget, .items = std::uint32_t(count)});
         const auto outputs = probe.result<gpu::RayOutput>(PROBE_OUTPUT, count);
         return double(std::count_if(outputs.begin(), outputs.end(), [](const auto& o) { return o.found == 0; })) /
                double(count);

@@ -58,8 +58,7 @@ protected:
 
     static void update(Rig& rig, std::uint32_t times = 1) {
         for (std::uint32_t i = 0; i < times; ++i) {
-            rig.integrator.run_kernel(KernelId::update, rig.pixels(),
-                                      {.iteration = 0, .round = 0, .last_round = 1, .offset = 0, .count = 0});
+            rig.integrator.run_kernel(KernelId::update, rig.pixels(), {.iteration = 0, .last_round = 1});
         }
     }
 
@@ -116,8 +115,7 @@ TEST_F(Sums, TheAovs) {
     }
     rig.integrator.buffer(Binding::aovs).upload(sums);
     for (std::uint32_t i = 0; i < launches / 2; ++i) {
-        rig.integrator.run_kernel(KernelId::eye, rig.pixels(),
-                                  {.iteration = 1, .round = 0, .last_round = 1, .offset = 0, .count = 0});
+        rig.integrator.run_kernel(KernelId::eye, rig.pixels(), {.iteration = 1, .last_round = 1});
     }
     const auto hard = rig.integrator.aovs();
     double error = 0.0;

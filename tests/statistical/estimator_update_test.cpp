@@ -73,8 +73,7 @@ public:
         integrator.buffer(Binding::gathered).upload(gathered);
         if (!before.tally.empty()) integrator.buffer(Binding::tally).upload(before.tally);
         if (!before.moments.empty()) integrator.buffer(Binding::moments).upload(before.moments);
-        integrator.run_kernel(KernelId::update, pixels(),
-                              {.iteration = 0, .round = 0, .last_round = 1, .offset = 0, .count = 0});
+        integrator.run_kernel(KernelId::update, pixels(), {.iteration = 0, .last_round = 1});
         return {field_.states(), before.found,
                 integrator.buffer(Binding::tally).download<std::uint32_t>(before.tally.size()),
                 integrator.buffer(Binding::moments).download<float>(before.moments.size())};

@@ -30,8 +30,7 @@ protected:
     }
 
     static gpu::PixelState update(SyntheticField& field) {
-        field.integrator().run_kernel(KernelId::update, 1,
-                                      {.iteration = 0, .round = 0, .last_round = 1, .offset = 0, .count = 0});
+        field.integrator().run_kernel(KernelId::update, 1, {.iteration = 0, .last_round = 1});
         return field.states().front();
     }
 

@@ -73,8 +73,7 @@ inline void gather(Rig& rig) {
         gpu::Status status = rig.status();
         status.blocked = 0;
         rig.integrator.buffer(Binding::status).upload_value(status);
-        rig.integrator.run_kernel(KernelId::gather, rig.pixels(),
-                                  {.iteration = 1, .round = round, .last_round = 1, .offset = 0, .count = 0});
+        rig.integrator.run_kernel(KernelId::gather, rig.pixels(), {.iteration = 1, .round = round, .last_round = 1});
         if (rig.status().blocked == 0) return;
     }
     FAIL() << "the gather does not end";
