@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <fstream>
 #include <iterator>
 #include <system_error>
@@ -9,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "app/record.h"
-#include "core/error.h"
 #include "core/fnv1a.h"
 #include "io/atomic_file.h"
 
@@ -74,7 +74,7 @@ PipelineCache::~PipelineCache() {
         std::error_code ignored;
         fs::create_directories(file_->parent_path(), ignored);
         write_file(*file_, sealed(bytes));
-    } catch (const Error&) {
+    } catch (const std::exception&) {
         // The next run compiles again.
     }
 }

@@ -24,6 +24,13 @@ double cpu_now() {
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-std::uint64_t peak_memory() { return std::uint64_t(usage_now().ru_maxrss) * 1024; }
+std::uint64_t peak_memory() {
+#ifdef __APPLE__
+    constexpr std::uint64_t unit = 1;  // B
+#else
+    constexpr std::uint64_t unit = 1024;
+#endif
+    return std::uint64_t(usage_now().ru_maxrss) * unit;
+}
 
 }  // namespace vkcppm
