@@ -18,7 +18,6 @@
 namespace vkcppm {
 namespace {
 
-constexpr std::uint32_t timed_launches = 2048;
 constexpr std::uint32_t most_photons_per_lane = 64;
 constexpr std::uint32_t stride_invocations = 16384;  // of kernels that stride over their input
 constexpr std::uint32_t first_photon_capacity = 6;   // photons a path, before a render knows better
@@ -48,10 +47,7 @@ void set_test(gpu::Params& params, const EstimatorRow& estimator, const Settings
 
 Integrator::Integrator(const SceneOnDevice& on_device, const Camera& camera, const Settings& settings,
                        std::vector<KernelForm> forms)
-    : device_(on_device.device()),
-      bindings_(device_),
-      commands_(device_, bindings_, timed_launches),
-      buffers_(device_, bindings_) {
+    : device_(on_device.device()), bindings_(device_), commands_(device_, bindings_), buffers_(device_, bindings_) {
     if (forms.empty()) forms = forms_for(device_.info());
     const FlatScene& scene = on_device.flat();
     const EstimatorRow& estimator = find_estimator(settings.estimator);

@@ -9,7 +9,7 @@
 namespace vkcppm {
 namespace {
 
-constexpr std::uint32_t timed_launches = 64;
+constexpr std::uint32_t most_rounds = 64;  // of a submission
 
 Specialization specialize(const FlatScene& scene, const Settings& settings, PathTracer::Light light) {
     std::uint32_t features = bits_of(scene.features) | bits_of(features_of(settings));
@@ -23,7 +23,7 @@ Specialization specialize(const FlatScene& scene, const Settings& settings, Path
 PathTracer::PathTracer(const SceneOnDevice& scene, const Camera& camera, const Settings& settings, Light light)
     : device_(scene.device()),
       bindings_(device_),
-      commands_(device_, bindings_, timed_launches),
+      commands_(device_, bindings_),
       buffers_(device_, bindings_),
       kernel_(device_, bindings_, std::string(row_of(KernelId::path).name), words_of(KernelId::path, {}),
               specialize(scene.flat(), settings, light)),
@@ -65,7 +65,7 @@ Image PathTracer::trace() {
         }
         rays_ += status.rays;
         invalid_ += status.invalid;
-        if (status.blocked != 0 && rounds_ < timed_launches) rounds_ *= 2;
+        if (status.blocked != 0 && rounds_ < most_rounds) rounds_ *= 2;
     }
     ++batches_;
     return {size_, buffers_.at(Binding::image).download<glm::vec3>(size_.pixels())};

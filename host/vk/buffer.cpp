@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstring>
+#include <initializer_list>
 
 #include <fmt/format.h>
 
@@ -13,13 +14,10 @@ namespace {
 
 using Memory = vk::MemoryPropertyFlagBits;
 
-std::optional<std::uint32_t> memory_type(const vk::PhysicalDeviceMemoryProperties& memory, std::uint32_t allowed,
-                                         vk::MemoryPropertyFlags wanted) {
-    for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
-        if ((allowed >> i & 1) && (memory.memoryTypes[i].propertyFlags & wanted) == wanted) return i;
-    }
-    return std::nullopt;
-}
+constexpr vk::MemoryPropertyFlags mappable = Memory::eHostVisible | Memory::eHostCoherent;
+/// Memory that is mapped but not cached is read some tens of MB a second where it lies on a card: beyond so many bytes,
+/// a copy on the device is faster.
+constexpr std::size_t read_uncached = 4096;
 
 vk::BufferUsageFlags usage_of(Access access) {
     using Usage = vk::BufferUsageFlagBits;
@@ -69,30 +67,47 @@ void check_heap(const Buffer::Impl& buffer) {
                             buffer.name, buffer.bytes, device.allocated, device.info.name, device.info.memory_bytes));
 }
 
-/// Device memory for `buffer`: device-local and mappable where there is such a type, else device-local.
-vk::raii::DeviceMemory allocate(Device::Impl& device, const vk::raii::Buffer& buffer, vk::MemoryPropertyFlags wanted,
-                                bool& mappable) {
+struct Allocation {
+    vk::raii::DeviceMemory memory;
+    vk::MemoryPropertyFlags properties;
+};
+
+/// Memory for `buffer` with the properties of the first wish that can be had: a type of memory may be absent, or full
+/// long before the others, as the window is through which the host sees the memory of some cards.
+Allocation allocate(Device::Impl& device, const vk::raii::Buffer& buffer,
+                    std::initializer_list<vk::MemoryPropertyFlags> wishes) {
+    const vk::MemoryPropertyFlags known = Memory::eDeviceLocal | mappable | Memory::eHostCached;  // others are special
     const auto needed = buffer.getMemoryRequirements();
-    auto type =
-        memory_type(device.memory, needed.memoryTypeBits, wanted | Memory::eHostVisible | Memory::eHostCoherent);
-    mappable = type.has_value();
-    if (!type) type = memory_type(device.memory, needed.memoryTypeBits, wanted);
-    if (!type) throw Error(ExitCode::internal, "the device has no memory type for buffers");
-    return vk::raii::DeviceMemory(*device.device, vk::MemoryAllocateInfo(needed.size, *type));
+    std::uint32_t untried = needed.memoryTypeBits;
+    std::optional<vk::OutOfDeviceMemoryError> full;
+    for (const vk::MemoryPropertyFlags wish : wishes) {
+        for (std::uint32_t i = 0; i < device.memory.memoryTypeCount; ++i) {
+            const vk::MemoryPropertyFlags properties = device.memory.memoryTypes[i].propertyFlags;
+            if (!(untried >> i & 1) || (properties & wish) != wish || (properties & ~known)) continue;
+            untried &= ~(1u << i);
+            try {
+                return {vk::raii::DeviceMemory(*device.device, vk::MemoryAllocateInfo(needed.size, i)), properties};
+            } catch (const vk::OutOfDeviceMemoryError& error) {
+                full = error;
+            }
+        }
+    }
+    if (full) throw *full;
+    throw Error(ExitCode::internal, "the device has no memory type for buffers");
 }
 
-/// A mapped buffer for one transfer. `fill` runs with its memory; `copy` records the transfer.
+/// A mapped buffer for one transfer. `before` and `after` run with its memory; `copy` records the transfer.
 template <typename Before, typename Copy, typename After>
-void through_staging(Device& device, std::uint64_t bytes, Before before, Copy copy, After after) {
+void through_staging(Device& device, std::uint64_t bytes, std::initializer_list<vk::MemoryPropertyFlags> wishes,
+                     Before before, Copy copy, After after) {
     guarded("copying through a staging buffer", [&] {
         auto& impl = device.impl();
         vk::raii::Buffer staging(*impl.device, vk::BufferCreateInfo({}, bytes,
                                                                     vk::BufferUsageFlagBits::eTransferSrc |
                                                                         vk::BufferUsageFlagBits::eTransferDst));
-        bool mappable = false;
-        vk::raii::DeviceMemory memory = allocate(impl, staging, {}, mappable);
-        staging.bindMemory(*memory, 0);
-        auto* mapped = static_cast<std::byte*>(memory.mapMemory(0, bytes));
+        const Allocation allocation = allocate(impl, staging, wishes);
+        staging.bindMemory(*allocation.memory, 0);
+        auto* mapped = static_cast<std::byte*>(allocation.memory.mapMemory(0, bytes));
         before(mapped);
         run_once(device, "copying through a staging buffer",
                  [&](vk::raii::CommandBuffer& commands) { copy(commands, *staging); });
@@ -116,12 +131,17 @@ Buffer::Buffer(Device& device, Binding binding, std::uint64_t bytes) : impl_(std
                         gpu.allocated),
             [&] {
                 impl.buffer.emplace(*gpu.device, vk::BufferCreateInfo({}, impl.bytes, usage_of(impl.access)));
-                bool mappable = false;
-                impl.memory.emplace(allocate(gpu, *impl.buffer, Memory::eDeviceLocal, mappable));
+                Allocation allocation =
+                    allocate(gpu, *impl.buffer, {Memory::eDeviceLocal | mappable, Memory::eDeviceLocal});
+                impl.memory.emplace(std::move(allocation.memory));
                 gpu.allocated += impl.bytes;
                 gpu.peak = std::max(gpu.peak, gpu.allocated);
                 impl.buffer->bindMemory(**impl.memory, 0);
-                if (mappable) impl.mapped = static_cast<std::byte*>(impl.memory->mapMemory(0, VK_WHOLE_SIZE));
+                name_object(gpu, *impl.buffer, impl.name);
+                if ((allocation.properties & mappable) == mappable) {
+                    impl.mapped = static_cast<std::byte*>(impl.memory->mapMemory(0, VK_WHOLE_SIZE));
+                    impl.cached = bool(allocation.properties & Memory::eHostCached);
+                }
                 if (const auto format = texel_format(impl.access)) {
                     impl.view.emplace(*gpu.device,
                                       vk::BufferViewCreateInfo({}, **impl.buffer, *format, 0, VK_WHOLE_SIZE));
@@ -149,7 +169,8 @@ void Buffer::write(std::span<const std::byte> data) {
         return;
     }
     through_staging(
-        *impl_->device, data.size(), [&](std::byte* memory) { std::memcpy(memory, data.data(), data.size()); },
+        *impl_->device, data.size(), {mappable},
+        [&](std::byte* memory) { std::memcpy(memory, data.data(), data.size()); },
         [&](vk::raii::CommandBuffer& commands, vk::Buffer staging) {
             commands.copyBuffer(staging, **impl_->buffer, vk::BufferCopy(0, 0, data.size()));
         },
@@ -159,12 +180,12 @@ void Buffer::write(std::span<const std::byte> data) {
 void Buffer::read(std::span<std::byte> data) const {
     assert(data.size() <= impl_->bytes);
     if (data.empty()) return;
-    if (impl_->mapped) {
+    if (impl_->mapped && (impl_->cached || data.size() <= read_uncached)) {
         std::memcpy(data.data(), impl_->mapped, data.size());
         return;
     }
     through_staging(
-        *impl_->device, data.size(), [](std::byte*) {},
+        *impl_->device, data.size(), {mappable | Memory::eHostCached, mappable}, [](std::byte*) {},
         [&](vk::raii::CommandBuffer& commands, vk::Buffer staging) {
             commands.copyBuffer(**impl_->buffer, staging, vk::BufferCopy(0, 0, data.size()));
         },

@@ -1,5 +1,7 @@
 #pragma once
-// Device memory with a name. Data goes in and out by value; where the memory is not mappable, through a staging copy.
+// Device memory with a name. Data goes in and out by value; through a staging copy where the memory is not mapped, or
+// slow to read. Sizes of data are the program's own, so that one that does not fit asserts: what a file says of a size
+// is looked at by its reader (Integrator::restore).
 
 #include <cstddef>
 #include <cstdint>
@@ -16,9 +18,9 @@ class Device;
 
 class Buffer {
 public:
-    /// A buffer for that binding: at least `bytes` bytes of zeros (an empty buffer holds 16). Throws
-    /// Error(out_of_device_memory) with the name, the size and the limit where it is larger than the device allows or
-    /// than there is memory for.
+    /// A buffer for that binding: at least `bytes` bytes of zeros (an empty buffer holds 16) in the device's memory,
+    /// mapped where the host sees it and there is room. Throws Error(out_of_device_memory) with the name, the size and
+    /// the limit where it is larger than the device allows or than there is memory for.
     Buffer(Device& device, Binding binding, std::uint64_t bytes);
     ~Buffer();
     Buffer(Buffer&&) noexcept;

@@ -2,7 +2,7 @@
 // What the other files of host/vk need to know of a Buffer.
 
 #include "vk/buffer.h"
-#include "vk/vulkan.h"
+#include "vk/device_impl.h"
 
 namespace vkcppm {
 
@@ -15,6 +15,7 @@ struct Buffer::Impl {
     std::optional<vk::raii::Buffer> buffer;
     std::optional<vk::raii::BufferView> view;
     std::byte* mapped = nullptr;  // null where the memory is not host visible
+    bool cached = false;          // what is mapped is read as fast as any memory of the host
 
     ~Impl() {
         if (memory) device->impl().allocated -= bytes;

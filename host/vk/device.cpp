@@ -11,12 +11,17 @@
 
 #include "shared/types.h"
 #include "vk/binding.h"
-#include "vk/vulkan.h"
+#include "vk/device_impl.h"
 
 namespace vkcppm {
 namespace {
 
 constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
+constexpr const char* portability_subset = "VK_KHR_portability_subset";  // its macro is in vulkan_beta.h alone
+
+bool has(const std::vector<vk::ExtensionProperties>& extensions, const char* name) {
+    return std::ranges::any_of(extensions, [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
+}
 
 vk::raii::Instance make_instance(const vk::raii::Context& context, bool validate) {
     vk::ApplicationInfo application("vkcppm", 1, nullptr, 0, VK_API_VERSION_1_2);
@@ -24,10 +29,18 @@ vk::raii::Instance make_instance(const vk::raii::Context& context, bool validate
     const vk::ValidationFeatureEnableEXT enable = vk::ValidationFeatureEnableEXT::eSynchronizationValidation;
     const vk::ValidationFeaturesEXT features(enable);
     vk::InstanceCreateInfo info({}, &application);
+    const auto offered = context.enumerateInstanceExtensionProperties();
     if (validate) {
         layers.push_back(validation_layer);
-        extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
         info.pNext = &features;
+    }
+    if (validate || has(offered, VK_EXT_DEBUG_UTILS_EXTENSION_NAME)) {
+        extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    }
+    // Without it drivers over another interface, such as MoltenVK, are not listed.
+    if (has(offered, VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME)) {
+        extensions.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
+        info.flags |= vk::InstanceCreateFlagBits::eEnumeratePortabilityKHR;
     }
     info.setPEnabledLayerNames(layers).setPEnabledExtensionNames(extensions);
     return vk::raii::Instance(context, info);
@@ -175,6 +188,13 @@ void run_once(Device& device, const std::string& doing, const std::function<void
         auto& commands = buffers.front();
         commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
         record(commands);
+        using Stage = vk::PipelineStageFlagBits;
+        using Access = vk::AccessFlagBits;
+        const vk::MemoryBarrier barrier(Access::eTransferWrite, Access::eHostRead | Access::eUniformRead |
+                                                                    Access::eShaderRead | Access::eShaderWrite |
+                                                                    Access::eIndirectCommandRead);
+        commands.pipelineBarrier(Stage::eTransfer, Stage::eHost | Stage::eComputeShader | Stage::eDrawIndirect, {},
+                                 barrier, {}, {});
         commands.end();
         vk::raii::Fence fence(*impl.device, vk::FenceCreateInfo());
         const vk::CommandBuffer raw = *commands;
@@ -247,11 +267,16 @@ Device::Device(const Options& options) : impl_(std::make_unique<Impl>()) {
 
     guarded("creating the device", [&] {
         const std::uint32_t family = *compute_family(*impl.physical);
+        impl.timestamp_bits = impl.physical->getQueueFamilyProperties()[family].timestampValidBits;
         const float priority = 1.0f;
         const vk::DeviceQueueCreateInfo queue({}, family, 1, &priority);
         vk::PhysicalDeviceVulkan12Features features;
         features.scalarBlockLayout = true;
-        vk::DeviceCreateInfo info({}, queue);
+        std::vector<const char*> extensions;  // a driver that has this one wants it asked for
+        if (has(impl.physical->enumerateDeviceExtensionProperties(), portability_subset)) {
+            extensions.push_back(portability_subset);
+        }
+        vk::DeviceCreateInfo info({}, queue, {}, extensions);
         info.pNext = &features;
         impl.device.emplace(*impl.physical, info);
         impl.queue.emplace(*impl.device, family, 0);

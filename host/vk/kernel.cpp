@@ -1,14 +1,20 @@
 #include "vk/kernel.h"
 
+#include <algorithm>
 #include <cassert>
 #include <map>
 
 #include <fmt/format.h>
 
 #include "vk/buffer_impl.h"
-#include "vk/vulkan.h"
+#include "vk/device_impl.h"
 
 namespace vkcppm {
+namespace {
+
+constexpr std::uint32_t stamps_a_pool = 1024;
+
+}  // namespace
 
 struct Bindings::Impl {
     Device* device = nullptr;
@@ -96,6 +102,7 @@ Kernel::Kernel(Device& device, const Bindings& bindings, std::string name, std::
         const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &info);
         impl_->pipeline.emplace(gpu, *device.impl().pipelines,
                                 vk::ComputePipelineCreateInfo({}, stage, **bindings.impl().layout));
+        name_object(device.impl(), *impl_->pipeline, impl_->name);
     });
 }
 
@@ -108,22 +115,20 @@ const std::string& Kernel::name() const { return impl_->name; }
 struct Commands::Impl {
     Device* device = nullptr;
     const Bindings* bindings = nullptr;
-    std::uint32_t capacity = 0;
     std::optional<vk::raii::CommandBuffer> commands;
-    std::optional<vk::raii::QueryPool> queries;
     std::optional<vk::raii::Fence> fence;
-    std::vector<const Kernel*> timed;
+    std::vector<vk::raii::QueryPool> stamps;  // one more where a submission has more launches than any before
+    std::uint32_t stamped = 0;                // at the begin, and after every launch
+    std::vector<const Kernel*> launched;
 };
 
-Commands::Commands(Device& device, const Bindings& bindings, std::uint32_t capacity) : impl_(std::make_unique<Impl>()) {
+Commands::Commands(Device& device, const Bindings& bindings) : impl_(std::make_unique<Impl>()) {
     guarded("creating a command buffer", [&] {
         auto& gpu = device.impl();
         impl_->device = &device;
         impl_->bindings = &bindings;
-        impl_->capacity = capacity;
         vk::raii::CommandBuffers buffers(*gpu.device, {**gpu.pool, vk::CommandBufferLevel::ePrimary, 1});
         impl_->commands.emplace(std::move(buffers.front()));
-        impl_->queries.emplace(*gpu.device, vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, 2 * capacity));
         impl_->fence.emplace(*gpu.device, vk::FenceCreateInfo());
     });
 }
@@ -132,14 +137,29 @@ Commands::~Commands() = default;
 
 void Commands::begin() {
     guarded("recording commands", [&] {
-        impl_->timed.clear();
+        impl_->launched.clear();
+        impl_->stamped = 0;
         impl_->commands->reset();
         impl_->commands->begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
-        impl_->commands->resetQueryPool(**impl_->queries, 0, 2 * impl_->capacity);
         const vk::DescriptorSet set = **impl_->bindings->impl().set;
         impl_->commands->bindDescriptorSets(vk::PipelineBindPoint::eCompute, **impl_->bindings->impl().layout, 0, set,
                                             {});
+        stamp();
     });
+}
+
+/// Takes the time once all kernels before have ended. A stamp before them could be taken while the driver still holds
+/// back the barrier in front of a launch, whose time would then count for two.
+void Commands::stamp() {
+    const std::uint32_t pool = impl_->stamped / stamps_a_pool, query = impl_->stamped % stamps_a_pool;
+    if (pool == impl_->stamps.size()) {
+        impl_->stamps.emplace_back(*impl_->device->impl().device,
+                                   vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, stamps_a_pool));
+    }
+    const vk::QueryPool queries = *impl_->stamps[pool];
+    if (query == 0) impl_->commands->resetQueryPool(queries, 0, stamps_a_pool);
+    impl_->commands->writeTimestamp(vk::PipelineStageFlagBits::eComputeShader, queries, query);
+    ++impl_->stamped;
 }
 
 void Commands::launch(const Kernel& kernel, std::uint64_t invocations, const gpu::Launch& push) {
@@ -161,31 +181,30 @@ void Commands::launch_indirect(const Kernel& kernel, const Buffer& groups, std::
 /// Records what `dispatch` adds, timed, after all before it and before all after it.
 template <typename Dispatch> void Commands::record(const Kernel& kernel, const gpu::Launch& push, Dispatch dispatch) {
     auto& commands = *impl_->commands;
-    const bool timed = impl_->timed.size() < impl_->capacity;
-    const std::uint32_t query = 2 * std::uint32_t(impl_->timed.size());
+    const bool takes_labels = commands.getDispatcher()->vkCmdBeginDebugUtilsLabelEXT != nullptr;
     using Stage = vk::PipelineStageFlagBits;
     using Access = vk::AccessFlagBits;
 
+    if (takes_labels) commands.beginDebugUtilsLabelEXT(vk::DebugUtilsLabelEXT(kernel.name().c_str()));
     commands.bindPipeline(vk::PipelineBindPoint::eCompute, **kernel.impl().pipeline);
     commands.pushConstants<gpu::Launch>(**impl_->bindings->impl().layout, vk::ShaderStageFlagBits::eCompute, 0, push);
-    if (timed) commands.writeTimestamp(Stage::eTopOfPipe, **impl_->queries, query);
     dispatch(commands);
     const vk::MemoryBarrier barrier(Access::eShaderWrite,
                                     Access::eShaderRead | Access::eShaderWrite | Access::eIndirectCommandRead);
     commands.pipelineBarrier(Stage::eComputeShader, Stage::eComputeShader | Stage::eDrawIndirect, {}, barrier, {}, {});
-    if (timed) {
-        commands.writeTimestamp(Stage::eComputeShader, **impl_->queries, query + 1);
-        impl_->timed.push_back(&kernel);
-    }
+    stamp();
+    impl_->launched.push_back(&kernel);
+    if (takes_labels) commands.endDebugUtilsLabelEXT();
 }
 
 std::vector<Timing> Commands::finish() {
     std::vector<Timing> timings;
     guarded("running kernels", [&] {
         auto& gpu = impl_->device->impl();
-        // Everything is read by the host next.
-        const vk::MemoryBarrier barrier(vk::AccessFlagBits::eShaderWrite,
-                                        vk::AccessFlagBits::eHostRead | vk::AccessFlagBits::eTransferRead);
+        // Everything is read or written by the host next, itself or through a transfer.
+        using Access = vk::AccessFlagBits;
+        const vk::MemoryBarrier barrier(Access::eShaderWrite,
+                                        Access::eHostRead | Access::eTransferRead | Access::eTransferWrite);
         impl_->commands->pipelineBarrier(vk::PipelineStageFlagBits::eComputeShader,
                                          vk::PipelineStageFlagBits::eHost | vk::PipelineStageFlagBits::eTransfer, {},
                                          barrier, {}, {});
@@ -196,14 +215,18 @@ std::vector<Timing> Commands::finish() {
             throw Error(ExitCode::device_lost, "the device did not finish its kernels");
         }
         gpu.device->resetFences(**impl_->fence);
-        const std::uint32_t count = 2 * std::uint32_t(impl_->timed.size());
-        if (count == 0) return;
-        const auto [result, stamps] =
-            impl_->queries->getResults<std::uint64_t>(0, count, count * sizeof(std::uint64_t), sizeof(std::uint64_t),
-                                                      vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
-        for (std::size_t i = 0; i < impl_->timed.size(); ++i) {
-            const double ticks = double(stamps[2 * i + 1] - stamps[2 * i]);
-            timings.push_back({impl_->timed[i], ticks * gpu.limits.timestampPeriod * 1e-9});
+        std::vector<std::uint64_t> stamps;
+        while (stamps.size() < impl_->stamped) {
+            const auto count = std::uint32_t(std::min<std::size_t>(stamps_a_pool, impl_->stamped - stamps.size()));
+            const auto [result, of_pool] = impl_->stamps[stamps.size() / stamps_a_pool].getResults<std::uint64_t>(
+                0, count, count * sizeof(std::uint64_t), sizeof(std::uint64_t),
+                vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+            stamps.insert(stamps.end(), of_pool.begin(), of_pool.end());
+        }
+        const std::uint64_t valid = ~std::uint64_t(0) >> (64 - gpu.timestamp_bits);  // the clock begins again after it
+        for (std::size_t i = 0; i < impl_->launched.size(); ++i) {
+            const double ticks = double((stamps[i + 1] - stamps[i]) & valid);
+            timings.push_back({impl_->launched[i], ticks * gpu.limits.timestampPeriod * 1e-9});
         }
     });
     return timings;

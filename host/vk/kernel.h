@@ -55,7 +55,8 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Device time of one launch of a kernel, by timestamps.
+/// Device time of one launch of a kernel, by timestamps: from the end of the launch before it, or the begin of all, to
+/// its own.
 struct Timing {
     const Kernel* kernel = nullptr;
     double seconds = 0.0;
@@ -64,8 +65,7 @@ struct Timing {
 /// A sequence of launches, each after the one before it is done and visible.
 class Commands {
 public:
-    /// At most `capacity` launches can be timed; more are launched untimed.
-    Commands(Device& device, const Bindings& bindings, std::uint32_t capacity);
+    Commands(Device& device, const Bindings& bindings);
     ~Commands();
     Commands(const Commands&) = delete;
     Commands& operator=(const Commands&) = delete;
@@ -75,11 +75,12 @@ public:
     void launch(const Kernel& kernel, std::uint64_t invocations, const gpu::Launch& push);
     /// As many work groups as three words of `groups` from byte `offset` say when it is due, none where the first is 0.
     void launch_indirect(const Kernel& kernel, const Buffer& groups, std::uint64_t offset, const gpu::Launch& push);
-    /// Submits what was recorded since begin() and waits for it. Throws Error(device_lost).
+    /// Submits what was recorded since begin() and waits for it: every launch in order. Throws Error(device_lost).
     std::vector<Timing> finish();
 
 private:
     template <typename Dispatch> void record(const Kernel& kernel, const gpu::Launch& push, Dispatch dispatch);
+    void stamp();
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

@@ -88,7 +88,7 @@ class Tracer {
 public:
     Tracer(Device& device, const FlatScene& flat, const Settings& settings, const Scene& scene)
         : bindings_(device),
-          commands_(device, bindings_, 1),
+          commands_(device, bindings_),
           buffers_(device, bindings_),
           on_device_(device, flat),
           trace_(device, bindings_, "trace", trace_words, scene_specialization(flat, 0)),

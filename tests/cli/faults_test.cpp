@@ -1,4 +1,5 @@
-// The program on a device that fails: exit code, one line, the last good picture kept.
+// The program on a device that fails: exit code, one line, the last good picture kept. And on one whose memory the host
+// does not see: the same bits.
 
 #include <ostream>
 #include <set>
@@ -70,6 +71,26 @@ TEST_F(FaultLayer, TheLayerItselfIsNoFault) {
     expect_done(run_on(
         "", {scene("slab"), "--size", "16x12", "--iterations", "2", "--photons", "500", "--quiet", "-o", "a.exr"}));
     EXPECT_EQ(names_in(folder_.path()), std::set<std::string>{"a.exr"});
+}
+
+// All that the host reads and writes then goes through staging buffers: scene, parameters, passes, picture, checkpoint.
+TEST_F(FaultLayer, MemoryThatTheHostDoesNotSeeGivesTheSameBits) {
+    const auto hashes_on = [&](const char* device) {
+        const auto render = [&](const Words& more) {
+            Words words{scene("slab"), "--size", "16x12", "--photons", "500",          "--quiet",
+                        "--aovs",      "--hash", "-o",    "a.exr",     "--checkpoint", "a.checkpoint"};
+            words.insert(words.end(), more.begin(), more.end());
+            const ProcessResult result = run_on(device, words);
+            expect_done(result);
+            return result.out;
+        };
+        const std::string first = render({"--iterations", "3"});
+        return first + render({"--iterations", "6", "--resume", "a.checkpoint"});
+    };
+    const std::string seen = hashes_on("");
+    EXPECT_EQ(lines_of(seen).size(), 2 * (3 * 6 + 1));
+    EXPECT_EQ(hashes_on("window 0 0"), seen);
+    EXPECT_EQ(hashes_on("window 0 100000"), seen) << "some buffers lie in the window, others do not";
 }
 
 }  // namespace

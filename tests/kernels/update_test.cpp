@@ -322,7 +322,7 @@ TEST_F(FilmSum, ManyAdditionsDoNotStagnate) {
     };
     const Kernel kernel(plain_device(), bindings, "update", words_of(KernelId::update, "sppm"),
                         {{SPEC_WORKGROUP, 64}, {SPEC_RINGS, 2}, {SPEC_SECTORS, 6}});
-    Commands commands(plain_device(), bindings, 1);
+    Commands commands(plain_device(), bindings);
     const auto run = [&](std::uint64_t launches) {
         commands.begin();
         for (std::uint64_t i = 0; i < launches; ++i) commands.launch(kernel, count, {.iteration = 0, .last_round = 1});

@@ -1,11 +1,14 @@
-// A Vulkan layer that makes the device fail as the environment says:
+// A Vulkan layer that makes the device another one, as the environment says:
 //   VKCPPM_FAULT="vkQueueSubmit 3 -4"   the third call of the function and all after it return that VkResult
 //   VKCPPM_FAULT="heap 0 67108864"      every heap of memory has that many bytes
+//   VKCPPM_FAULT="window 0 65536"       a card of its own: its memory is not seen by the host, but for a window that is
+//                                       full once so many bytes were allocated in it; 0: there is no window
 // The program under test is the one that users have: it knows nothing of this.
 
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <map>
 #include <sstream>
 #include <string>
 
@@ -17,7 +20,7 @@ namespace {
 struct Fault {
     std::string function;
     int first = 1;        // call that fails
-    long long value = 0;  // VkResult, or bytes of a heap
+    long long value = 0;  // VkResult, or bytes of a heap or of the window
     int calls = 0;
 
     Fault() {
@@ -32,6 +35,9 @@ PFN_vkGetInstanceProcAddr next_instance_function = nullptr;  // of the one insta
 PFN_vkGetDeviceProcAddr next_device_function = nullptr;
 PFN_vkGetPhysicalDeviceMemoryProperties next_memory_properties = nullptr;
 VkDevice the_device = VK_NULL_HANDLE;
+std::map<std::uint32_t, std::uint32_t> real_types;  // memory types of a card of its own to the driver's
+std::uint32_t window_types = 0;                     // a bit each
+VkDeviceSize in_window = 0;                         // bytes
 
 /// The loader's link to the next layer in the chain of a create info; takes it out of the chain.
 template <typename Link, typename Info> auto* take_link(const Info* info, VkStructureType type) {
@@ -86,7 +92,20 @@ VkResult wait_for_fences(VkDevice device, std::uint32_t count, const VkFence* fe
 VkResult allocate_memory(VkDevice device, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks* allocator,
                          VkDeviceMemory* memory) {
     if (fault.strikes("vkAllocateMemory")) return VkResult(fault.value);
-    return next<PFN_vkAllocateMemory>("vkAllocateMemory")(device, info, allocator, memory);
+    if (window_types >> info->memoryTypeIndex & 1) {
+        in_window += info->allocationSize;
+        if (in_window > VkDeviceSize(fault.value)) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    }
+    VkMemoryAllocateInfo real = *info;
+    if (const auto type = real_types.find(info->memoryTypeIndex); type != real_types.end()) {
+        real.memoryTypeIndex = type->second;
+    }
+    return next<PFN_vkAllocateMemory>("vkAllocateMemory")(device, &real, allocator, memory);
+}
+
+void get_buffer_memory_requirements(VkDevice device, VkBuffer buffer, VkMemoryRequirements* needed) {
+    next<PFN_vkGetBufferMemoryRequirements>("vkGetBufferMemoryRequirements")(device, buffer, needed);
+    for (const auto& [type, real] : real_types) needed->memoryTypeBits |= (needed->memoryTypeBits >> real & 1) << type;
 }
 
 VkResult create_compute_pipelines(VkDevice device, VkPipelineCache cache, std::uint32_t count,
@@ -97,11 +116,33 @@ VkResult create_compute_pipelines(VkDevice device, VkPipelineCache cache, std::u
                                                                           pipelines);
 }
 
+/// Hides from the host what is both the device's and the host's, and adds a type for the window and one of the host.
+void make_card(VkPhysicalDeviceMemoryProperties& memory) {
+    constexpr VkMemoryPropertyFlags mapped = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    constexpr VkMemoryPropertyFlags local = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+    const std::uint32_t count = memory.memoryTypeCount;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        VkMemoryType& own = memory.memoryTypes[i];
+        if ((own.propertyFlags & (local | mapped)) != (local | mapped)) continue;
+        own.propertyFlags = local;
+        const auto add = [&](VkMemoryPropertyFlags properties) {
+            real_types[memory.memoryTypeCount] = i;
+            memory.memoryTypes[memory.memoryTypeCount++] = {properties, own.heapIndex};
+        };
+        if (fault.value > 0) {
+            window_types |= 1u << memory.memoryTypeCount;
+            add(local | mapped);
+        }
+        add(mapped | VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
+    }
+}
+
 void get_memory_properties(VkPhysicalDevice physical, VkPhysicalDeviceMemoryProperties* memory) {
     next_memory_properties(physical, memory);
     for (std::uint32_t i = 0; fault.function == "heap" && i < memory->memoryHeapCount; ++i) {
         memory->memoryHeaps[i].size = VkDeviceSize(fault.value);
     }
+    if (fault.function == "window") make_card(*memory);
 }
 
 /// The layer's own function of that name, or null.
@@ -113,6 +154,9 @@ PFN_vkVoidFunction own_function(const char* name) {
     if (is("vkQueueSubmit")) return reinterpret_cast<PFN_vkVoidFunction>(queue_submit);
     if (is("vkWaitForFences")) return reinterpret_cast<PFN_vkVoidFunction>(wait_for_fences);
     if (is("vkAllocateMemory")) return reinterpret_cast<PFN_vkVoidFunction>(allocate_memory);
+    if (is("vkGetBufferMemoryRequirements")) {
+        return reinterpret_cast<PFN_vkVoidFunction>(get_buffer_memory_requirements);
+    }
     if (is("vkCreateComputePipelines")) return reinterpret_cast<PFN_vkVoidFunction>(create_compute_pipelines);
     return nullptr;
 }

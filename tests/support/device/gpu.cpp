@@ -25,7 +25,7 @@ void GpuTest::TearDown() {
 Probe::Probe(std::string name, std::span<const std::uint32_t> spirv, std::uint32_t stack, std::uint32_t features,
              std::uint32_t node_bits)
     : bindings_(device()),
-      commands_(device(), bindings_, 16),
+      commands_(device(), bindings_),
       kernel_(device(), bindings_, std::move(name), spirv,
               {{SPEC_WORKGROUP, 64}, {SPEC_STACK, stack}, {SPEC_FEATURES, features}, {SPEC_NODE_BITS, node_bits}}) {
     create(Binding::params, sizeof(gpu::Params));

@@ -1,5 +1,5 @@
 #pragma once
-// vulkan.hpp and what only host/vk knows: included by host/vk/*.cpp alone.
+// vulkan.hpp and what the other files of host/vk need to know of a Device: included by host/vk alone.
 
 #include <functional>
 #include <mutex>
@@ -27,8 +27,9 @@ struct Device::Impl {
     vk::PhysicalDeviceLimits limits;
     vk::PhysicalDeviceMemoryProperties memory;
     std::uint32_t subgroup_size = 1;
-    bool loop_limit = false;      // a driver that stops all loops of a SIMD group after 65,535 trips
-    std::uint64_t allocated = 0;  // bytes of live buffers
+    std::uint32_t timestamp_bits = 64;  // that count
+    bool loop_limit = false;            // a driver that stops all loops of a SIMD group after 65,535 trips
+    std::uint64_t allocated = 0;        // bytes of live buffers
     std::uint64_t peak = 0;
     mutable std::mutex messages_mutex;
     std::vector<std::string> messages;
@@ -38,7 +39,15 @@ struct Device::Impl {
 /// `doing` completes the line: "Vulkan failed while <doing>".
 void guarded(const std::string& doing, const std::function<void()>& work);
 
-/// Records commands, submits them and waits for the end.
+/// Records commands, submits them and waits for the end. What they transferred is there for the host and for kernels.
 void run_once(Device& device, const std::string& doing, const std::function<void(vk::raii::CommandBuffer&)>& record);
+
+/// Gives a Vulkan object the name by which debuggers, profilers and the validation layer tell it, where
+/// VK_EXT_debug_utils is there.
+template <typename Object> void name_object(Device::Impl& device, const Object& object, const std::string& name) {
+    if (!device.device->getDispatcher()->vkSetDebugUtilsObjectNameEXT) return;
+    const auto handle = (std::uint64_t)(typename Object::CType)(*object);  // a pointer, or a number on 32 bits
+    device.device->setDebugUtilsObjectNameEXT({Object::objectType, handle, name.c_str()});
+}
 
 }  // namespace vkcppm
