@@ -431,7 +431,7 @@ Bvh build_bvh(std::span<const std::array<glm::vec3, 3>> triangles) {
     return {std::move(collapser.nodes), std::move(collapser.order), std::max(1u, collapser.stack)};
 }
 
-Child child_of(const Bvh& bvh, std::uint32_t index, int c) {
+BvhChild child_of(const Bvh& bvh, std::uint32_t index, int c) {
     const gpu::BvhNode& node = bvh.nodes[index];
     if ((node.exponents >> (24 + c) & 1u) == 0) return {};
     const std::uint32_t inner = node.children & BVH_CHILDREN_MASK, first = node.children >> BVH_CHILDREN_SHIFT;
@@ -441,10 +441,10 @@ Child child_of(const Bvh& bvh, std::uint32_t index, int c) {
     return {.first = leaves[0] + (place & 15u), .count = place >> 4 & 15u};
 }
 
-Box child_box(const gpu::BvhNode& node, int c) {
+BvhBox child_box(const gpu::BvhNode& node, int c) {
     const std::array<std::uint32_t, 3> low = {node.low_x, node.low_y, node.low_z};
     const std::array<std::uint32_t, 3> high = {node.high_x, node.high_y, node.high_z};
-    Box box;
+    BvhBox box;
     for (int axis = 0; axis < 3; ++axis) {
         const float cell = std::bit_cast<float>((node.exponents >> (8 * axis) & 255u) << 23);
         box.low[axis] = node.origin[axis] + float(low[axis] >> (8 * c) & 255u) * cell;

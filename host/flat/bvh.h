@@ -25,18 +25,18 @@ struct Bvh {
 Bvh build_bvh(std::span<const std::array<glm::vec3, 3>> triangles);
 
 /// A child of a node, as the kernels find it: a node where `node` is not 0, a leaf where `count` is not 0, or none.
-struct Child {
+struct BvhChild {
     std::uint32_t node = 0;
     std::uint32_t first = 0;  // triangle
     std::uint32_t count = 0;
 };
-Child child_of(const Bvh& bvh, std::uint32_t index, int c);
+BvhChild child_of(const Bvh& bvh, std::uint32_t index, int c);
 
 /// Box of child `c` of a node, as the kernels decode it.
-struct Box {
+struct BvhBox {
     glm::vec3 low{0.0f};
     glm::vec3 high{0.0f};
 };
-Box child_box(const gpu::BvhNode& node, int c);
+BvhBox child_box(const gpu::BvhNode& node, int c);
 
 }  // namespace vkcppm

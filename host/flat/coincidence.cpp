@@ -17,6 +17,8 @@
 namespace vkcppm {
 namespace {
 
+constexpr float half_ulps_8 = 4.8e-7f;  // 8 x 2^-24, rounded up; the same in shaders/include/light.glsl
+
 namespace geometry = boost::geometry;
 using Point = geometry::model::point<float, 3, geometry::cs::cartesian>;
 using Box = geometry::model::box<Point>;
@@ -111,10 +113,10 @@ bool lies_on(const Corners& a, const Corners& b, double tolerance) {
 
 float position_error(const Corners& c) {
     const glm::vec3 extent = glm::abs(c[0]) + glm::abs(c[1] - c[0]) + glm::abs(c[2] - c[0]);
-    return 4.8e-7f * std::max({extent.x, extent.y, extent.z});
+    return half_ulps_8 * std::max({extent.x, extent.y, extent.z});
 }
 
-std::vector<std::uint32_t> distinct_triangles(std::span<const Corners> corners, std::span<const Face> faces) {
+std::vector<std::uint32_t> distinct_triangles(std::span<const Corners> corners, std::span<const FaceTraits> faces) {
     const SortedTriangles sorted(corners);
     std::vector<std::uint32_t> kept;
     for (std::size_t i = 0; i < sorted.order.size();) {
@@ -129,7 +131,7 @@ std::vector<std::uint32_t> distinct_triangles(std::span<const Corners> corners, 
     return kept;
 }
 
-void part_touching_faces(std::vector<Corners>& corners, std::span<const Face> faces) {
+void part_touching_faces(std::vector<Corners>& corners, std::span<const FaceTraits> faces) {
     std::vector<float> shifts(corners.size(), 0.0f);  // towards the front
     const auto move = [&](std::uint32_t i, std::uint32_t other, float side) {
         const float gap = 2.0f * (position_error(corners[i]) + position_error(corners[other]));

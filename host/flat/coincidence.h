@@ -15,7 +15,7 @@ namespace vkcppm {
 using Corners = std::array<glm::vec3, 3>;
 
 /// What counts of a triangle where another one lies on it.
-struct Face {
+struct FaceTraits {
     std::uint32_t material = 0;
     bool emits = false;
     bool is_solid = false;  // the boundary of solid glass
@@ -26,12 +26,12 @@ float position_error(const Corners& corners);
 
 /// Indices, ascending, of the triangles to keep: not those without a normal in floats, and of triangles with the same
 /// corners and the same front one, the first that emits or else the first. O(n log n).
-std::vector<std::uint32_t> distinct_triangles(std::span<const Corners> corners, std::span<const Face> faces);
+std::vector<std::uint32_t> distinct_triangles(std::span<const Corners> corners, std::span<const FaceTraits> faces);
 
 /// Moves apart what touches, by four times the rounding error: a face of solid glass that lies front to front on
 /// another face, wholly or in part, goes into its solid, so that there is a thin gap of air as between any two bodies;
 /// a lamp in the plane of what it lies on goes to its front, and so do the two sides of an opaque sheet, triangles with
 /// the same corners that differ. O(n log n) where few lie on many.
-void part_touching_faces(std::vector<Corners>& corners, std::span<const Face> faces);
+void part_touching_faces(std::vector<Corners>& corners, std::span<const FaceTraits> faces);
 
 }  // namespace vkcppm

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "flat/feature.h"
-#include "flat/flatten.h"
+#include "flat/flat_scene.h"
 #include "flat/surface.h"
 #include "scene/scene.h"
 

@@ -9,6 +9,7 @@
 #include <glm/packing.hpp>
 
 #include "core/error.h"
+#include "flat/bounds.h"
 #include "flat/coincidence.h"
 #include "flat/features.h"
 #include "flat/lights.h"
@@ -68,7 +69,7 @@ int first_corner(const Corners& c) {
 
 Placed place_triangles(const Scene& scene, const SceneFrame& frame, const std::vector<SurfaceTraits>& traits) {
     std::vector<Corners> all(scene.triangles.size());
-    std::vector<Face> faces;
+    std::vector<FaceTraits> faces;
     for (std::size_t i = 0; i < all.size(); ++i) {
         const Triangle& triangle = scene.triangles[i];
         for (int c = 0; c < 3; ++c) all[i][c] = glm::vec3(frame.point(scene.positions[triangle.vertex[c]]));
@@ -77,7 +78,7 @@ Placed place_triangles(const Scene& scene, const SceneFrame& frame, const std::v
     }
     Placed placed;
     placed.source = distinct_triangles(all, faces);
-    std::vector<Face> kept;
+    std::vector<FaceTraits> kept;
     for (const std::uint32_t i : placed.source) {
         placed.corners.push_back(all[i]);
         kept.push_back(faces[i]);
@@ -108,8 +109,9 @@ void add_triangles(const Scene& scene, const std::vector<SurfaceTraits>& traits,
         geometry.e2 = placed[2] - placed[0];
         geometry.error = position_error(placed);
         // Rounding of s . (d x e2) and d . (s x e1) for |s| = |d| = 1: 12 half-ulps of the edge.
-        geometry.slack_u = 7.2e-7f * glm::length(geometry.e2);
-        geometry.slack_v = 7.2e-7f * glm::length(geometry.e1);
+        constexpr float half_ulps_12 = 7.2e-7f;  // 12 x 2^-24, rounded up
+        geometry.slack_u = half_ulps_12 * glm::length(geometry.e2);
+        geometry.slack_v = half_ulps_12 * glm::length(geometry.e1);
         flat.triangles.push_back(geometry);
 
         const glm::dvec3 normal = glm::cross(glm::dvec3(geometry.e1), glm::dvec3(geometry.e2));
@@ -131,8 +133,8 @@ void add_triangles(const Scene& scene, const std::vector<SurfaceTraits>& traits,
             flat.radius = std::max(flat.radius, double(glm::length(p)));
         }
     }
-    flat.low -= 1e-5f;
-    flat.high += 1e-5f;
+    flat.low -= float(bounds_padding);
+    flat.high += float(bounds_padding);
 }
 
 glm::vec4 texcoords_of(const Scene& scene, std::uint32_t vertex) {

@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "flat/features.h"
 #include "render/kernel_choice.h"
-#include "flat/lights.h"
+#include "flat/bounds.h"
 
 namespace vkcppm {
 namespace {

@@ -1,9 +1,8 @@
 #pragma once
 // A reference picture and its standard error. The light is split in two, and each half made by what converges there:
 //   caustics   what leaves its light by way of one or more delta lobes (mirrors, smooth glass) before it meets any
-//              other lobe, and what is lit by a lamp close by, such as its fixture, and seen by way of another surface:
-// by
-//              photons, in discs of a few pixels, with a kernel that extrapolates their radius to 0
+//              other lobe, and what is lit by a lamp close by, such as its fixture, and seen by way of another
+//              surface: by photons, in discs of a few pixels, with a kernel that extrapolates their radius to 0
 //   the rest   by unbiased path tracing, where every vertex can be connected to the light
 // The two are independent and add up.
 

@@ -12,7 +12,7 @@
 namespace vkcppm::bench {
 namespace {
 
-double area(const Box& box) {
+double area(const BvhBox& box) {
     const glm::dvec3 d = glm::dvec3(box.high) - glm::dvec3(box.low);
     return 2.0 * (d.x * d.y + d.y * d.z + d.z * d.x);
 }
@@ -25,17 +25,17 @@ struct Cost {
 };
 Cost cost_of(const Bvh& bvh) {
     Cost cost;
-    Box root;
+    BvhBox root;
     for (int c = 0; c < 4; ++c) {
-        const Child child = child_of(bvh, 0, c);
+        const BvhChild child = child_of(bvh, 0, c);
         if (child.node == 0 && child.count == 0) continue;
-        const Box box = child_box(bvh.nodes[0], c);
+        const BvhBox box = child_box(bvh.nodes[0], c);
         root.low = c == 0 ? box.low : glm::min(root.low, box.low);
         root.high = c == 0 ? box.high : glm::max(root.high, box.high);
     }
     for (std::uint32_t index = 0; index < bvh.nodes.size(); ++index) {
         for (int c = 0; c < 4; ++c) {
-            const Child child = child_of(bvh, index, c);
+            const BvhChild child = child_of(bvh, index, c);
             if (child.node == 0 && child.count == 0) continue;
             const double probability = area(child_box(bvh.nodes[index], c)) / area(root);
             cost.nodes += child.node != 0 ? probability : 0.0;

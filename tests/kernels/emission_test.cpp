@@ -18,7 +18,7 @@
 
 #include "flat/features.h"
 #include "flat/flatten.h"
-#include "flat/lights.h"
+#include "flat/bounds.h"
 #include "kernels/probe.h"
 #include "oracle/texture.h"
 #include "support/device/gpu.h"

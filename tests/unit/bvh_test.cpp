@@ -46,7 +46,7 @@ std::uint32_t walk_node(const Bvh& bvh, const Corners& triangles, std::uint32_t 
     const gpu::BvhNode& node = bvh.nodes[index];
     std::uint32_t children = 0, deepest = 0;
     for (int c = 0; c < 4; ++c) {
-        const Child child = child_of(bvh, index, c);
+        const BvhChild child = child_of(bvh, index, c);
         if (child.node == 0 && child.count == 0) continue;
         ++children;
         std::vector<std::uint32_t> inside;
@@ -63,7 +63,7 @@ std::uint32_t walk_node(const Bvh& bvh, const Corners& triangles, std::uint32_t 
             EXPECT_GT(child.node, index) << "a node before those below it";
             deepest = std::max(deepest, walk_node(bvh, triangles, child.node, depth + 1, walk, inside));
         }
-        const Box box = child_box(node, c);
+        const BvhBox box = child_box(node, c);
         for (const std::uint32_t triangle : inside) {
             for (const glm::vec3& corner : triangles[triangle]) {
                 for (int axis = 0; axis < 3; ++axis) {

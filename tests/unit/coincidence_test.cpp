@@ -14,7 +14,7 @@
 namespace vkcppm::test {
 namespace {
 
-constexpr Face diffuse{0, false, false}, other{1, false, false}, lamp{2, true, false}, glass{3, false, true};
+constexpr FaceTraits diffuse{0, false, false}, other{1, false, false}, lamp{2, true, false}, glass{3, false, true};
 
 Corners in_plane(float y, float size, bool up) {
     const glm::vec3 a(0, y, 0), b(0, y, size), c(size, y, 0);
@@ -45,7 +45,7 @@ TEST(Coincidence, WhatHasNoNormalIsLeftOut) {
 }
 
 /// How far each triangle moves along y, in its rounding errors.
-std::vector<float> shifts(const std::vector<Corners>& corners, const std::vector<Face>& faces) {
+std::vector<float> shifts(const std::vector<Corners>& corners, const std::vector<FaceTraits>& faces) {
     std::vector<Corners> moved = corners;
     part_touching_faces(moved, faces);
     std::vector<float> result;

@@ -1,7 +1,9 @@
-// Who may include whom under host/: core <- {scene, vk, io} <- flat <- render <- study <- app <- main, and the libraries
-// that one place alone may see.
+// Who may include whom under host/: core <- {scene, vk, io} <- flat <- render <- study <- app <- main, no file by a
+// circle itself, and the libraries that one place alone may see.
 
+#include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <regex>
 #include <set>
@@ -51,18 +53,30 @@ const std::vector<Confined> confined = {
     {R"(CLI/.*)", R"(app/.*)"},
 };
 
+struct Include {
+    std::string header;
+    bool is_ours = false;  // in quotes
+};
+
+std::vector<Include> includes_of(const std::string& text) {
+    static const std::regex include(R"re(#[ \t]*include[ \t]*(["<])([^">]+)[">])re");
+    std::vector<Include> found;
+    for (std::sregex_iterator it(text.begin(), text.end(), include), end; it != end; ++it) {
+        found.push_back({(*it)[2], (*it)[1] == "\""});
+    }
+    return found;
+}
+
 /// What breaks the rules in a file of that name (relative to host/) and text, a line each.
 std::vector<std::string> violations(const std::string& name, const std::string& text) {
-    static const std::regex include(R"re(#[ \t]*include[ \t]*(["<])([^">]+)[">])re");
     std::vector<std::string> found;
     const std::string folder = fs::path(name).parent_path().string();
-    for (std::sregex_iterator it(text.begin(), text.end(), include), end; it != end; ++it) {
-        const std::string header = (*it)[2];
+    for (const auto& [header, is_ours] : includes_of(text)) {
         const std::string told = name + " includes " + header;
         const std::string owner = header.substr(0, header.rfind('/'));
         // What is embedded, SPIR-V and texts, has no folder; everything else of the project is named from host/ or
         // shaders/.
-        if ((*it)[1] == "\"" && !header.ends_with(".inc") && !allowed.at(folder).contains(owner)) {
+        if (is_ours && !header.ends_with(".inc") && !allowed.at(folder).contains(owner)) {
             found.push_back(told + ": '" + folder + "' may not look into '" + owner + "'");
         }
         for (const Confined& rule : confined) {
@@ -73,6 +87,55 @@ std::vector<std::string> violations(const std::string& name, const std::string& 
         }
     }
     return found;
+}
+
+/// A source and its headers, x.cpp, x.h and x_impl.h, are one unit: its name, with the folder.
+std::string unit_of(const std::string& file) {
+    const std::string name = file.substr(0, file.rfind('.'));
+    return name.ends_with("_impl") ? name.substr(0, name.size() - 5) : name;
+}
+
+using Units = std::map<std::string, std::set<std::string>>;  // a unit to those that it includes
+
+void add_includes(Units& units, const std::string& name, const std::string& text) {
+    std::set<std::string>& included = units[unit_of(name)];
+    for (const auto& [header, is_ours] : includes_of(text)) {
+        if (is_ours && unit_of(header) != unit_of(name)) included.insert(unit_of(header));
+    }
+}
+
+/// Units that need one another, by way of others or not: in the order of their includes, the first again at the end.
+/// Empty where there are none.
+std::vector<std::string> circle_in(const Units& units) {
+    std::set<std::string> done;
+    std::vector<std::string> path;
+    const std::function<bool(const std::string&)> closes = [&](const std::string& unit) {
+        const auto before = std::ranges::find(path, unit);
+        const bool met = before != path.end();
+        if (met) path.erase(path.begin(), before);
+        if (!met && (done.contains(unit) || !units.contains(unit))) return false;
+        path.push_back(unit);
+        if (met || std::ranges::any_of(units.at(unit), closes)) return true;
+        path.pop_back();
+        done.insert(unit);
+        return false;
+    };
+    for (const auto& [unit, included] : units) {
+        if (closes(unit)) return path;
+    }
+    return {};
+}
+
+TEST(Layering, CirclesOfFilesAreFound) {
+    Units units;
+    add_includes(units, "flat/a.cpp", "#include \"flat/a.h\"\n#include \"flat/b.h\"\n#include <a.h>\n");
+    add_includes(units, "flat/b.h", "#include \"flat/c.h\"\n#include \"shared/types.h\"\n");
+    add_includes(units, "flat/c_impl.h", "#include \"flat/c.h\"\n");
+    EXPECT_EQ(circle_in(units), std::vector<std::string>());
+    add_includes(units, "flat/c.cpp", "#include \"flat/c.h\"\n#include \"flat/b.h\"\n");
+    EXPECT_EQ(circle_in(units), (std::vector<std::string>{"flat/b", "flat/c", "flat/b"}));
+    add_includes(units, "flat/b.cpp", "#include \"flat/a.h\"\n");
+    EXPECT_EQ(circle_in(units), (std::vector<std::string>{"flat/a", "flat/b", "flat/a"}));
 }
 
 TEST(Layering, TheRulesCatchWhatTheyForbid) {
@@ -102,16 +165,18 @@ TEST(Layering, TheRulesAllowWhatTheDesignDoes) {
 TEST(Layering, EveryFileOfTheHostKeepsTheRules) {
     const fs::path host = test::source_folder() / "host";
     std::set<std::string> folders;
+    Units units;
     for (const auto& entry : fs::recursive_directory_iterator(host)) {
         if (!entry.is_regular_file()) continue;
         const fs::path name = fs::relative(entry.path(), host);
         const std::string folder = name.parent_path().string();
         ASSERT_TRUE(allowed.contains(folder)) << name << " lies in a folder that the design does not know";
         folders.insert(folder);
-        for (const std::string& violation : violations(name.string(), test::read_bytes(entry.path()))) {
-            ADD_FAILURE() << violation;
-        }
+        const std::string text = test::read_bytes(entry.path());
+        for (const std::string& violation : violations(name.string(), text)) ADD_FAILURE() << violation;
+        add_includes(units, name.string(), text);
     }
+    EXPECT_EQ(circle_in(units), std::vector<std::string>()) << "each includes the next";
     EXPECT_EQ(folders.size(), allowed.size()) << "not every folder of the design was seen";
 }
 

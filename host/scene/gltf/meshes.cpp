@@ -200,14 +200,14 @@ private:
     }
 
     /// The corners counter-clockwise in the world: a mirroring transform turns them over.
-    static Corners wound(Corners corners, const Placement& placement) {
+    static CornerIndices wound(CornerIndices corners, const Placement& placement) {
         if (placement.mirrored) std::swap(corners[1], corners[2]);
         return corners;
     }
 
     void add_smooth(const LocalPrimitive& local, const Placement& placement, std::uint32_t material,
                     std::size_t first) {
-        for (const Corners& corners : local.triangles) {
+        for (const CornerIndices& corners : local.triangles) {
             Triangle triangle{wound(corners, placement), material};
             std::array<glm::dvec3, 3> p;
             for (int k = 0; k < 3; ++k) {
@@ -227,7 +227,7 @@ private:
 
     /// Three vertices a triangle with its own normal, as glTF 2.0, section 3.7.2.1, asks for where NORMAL is missing.
     void add_flat(const LocalPrimitive& local, int node, const Placement& placement, std::uint32_t material) {
-        for (const Corners& corners : local.triangles) {
+        for (const CornerIndices& corners : local.triangles) {
             Triangle triangle{wound(corners, placement), material};
             std::array<Vertex, 3> vertices;
             for (int k = 0; k < 3; ++k) vertices[k] = placed(local, triangle.vertex[k], node, placement);

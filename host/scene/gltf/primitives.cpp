@@ -17,8 +17,8 @@ namespace {
 using nlohmann::json;
 
 /// The triangles of glTF 2.0, section 3.7.2.1, in its order and winding: a list, a strip or a fan of `indices`.
-std::vector<Corners> assemble_triangles(int mode, const std::vector<std::uint32_t>& indices) {
-    std::vector<Corners> triangles;
+std::vector<CornerIndices> assemble_triangles(int mode, const std::vector<std::uint32_t>& indices) {
+    std::vector<CornerIndices> triangles;
     const std::size_t n = indices.size();
     if (mode == TINYGLTF_MODE_TRIANGLES) {
         for (std::size_t i = 0; i + 2 < n; i += 3) triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});

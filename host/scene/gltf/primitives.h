@@ -20,7 +20,7 @@ struct Primitive;
 
 namespace vkcppm {
 
-using Corners = std::array<std::uint32_t, 3>;
+using CornerIndices = std::array<std::uint32_t, 3>;
 
 /// One primitive in the space of its mesh. Attributes that are missing or that nothing reads are null.
 struct LocalPrimitive {
@@ -29,7 +29,7 @@ struct LocalPrimitive {
     std::array<SharedVectors<2>, 2> uv;  // not zeros, at most max_uv
     SharedVectors<4> colors;             // 0..1
     SharedVectors<4> tangents;
-    std::vector<Corners> triangles;  // into the above, in order and winding of the file
+    std::vector<CornerIndices> triangles;  // into the above, in order and winding of the file
 };
 
 /// Whether a primitive makes triangles at all.

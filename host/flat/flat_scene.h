@@ -1,0 +1,43 @@
+#pragma once
+// A Scene as the kernels read it: leaf-ordered triangles, BVH, surfaces, an alias table of lights, all in the frame.
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "core/image.h"
+#include "flat/bvh.h"
+#include "flat/feature.h"
+#include "flat/frame.h"
+#include "scene/scene.h"
+#include "shared/types.h"
+
+namespace vkcppm {
+
+struct FlatScene {
+    SceneFrame frame;
+    Bvh bvh;
+    std::vector<gpu::TriangleGeometry> triangles;  // in leaf order, as all that is listed by triangle
+    std::vector<Triangle> sources;                 // of the scene, corners in the order in which kernels see them
+    std::vector<gpu::TriangleShading> shading;
+    std::vector<glm::vec4> texcoords;       // [3 x triangles] both sets of a corner, where there are textures
+    std::vector<glm::uvec4> vertex_colors;  // [2 x triangles] half floats, where there are any
+    std::vector<glm::uvec4> tangents;       // [triangles] where there are normal maps
+    std::vector<gpu::SurfaceMaterial> materials;
+    std::vector<gpu::TextureLookup> textures;
+    std::vector<std::uint32_t> images;   // texels of all images, a word each
+    std::vector<gpu::Light> lights;      // alias table; empty where nothing emits
+    double light_power = 0.0;            // of all, mean channel, W (frame-scaled): about, where lights have textures
+    Extent environment_size;             // of the map, cut where its pixels were coarse
+    std::vector<glm::vec4> environment;  // [pixels] radiance, keep of its alias table
+    std::vector<glm::uvec2> environment_alias;  // [pixels] its other entry; environment_area, as bits
+    std::vector<Feature> features;              // what the scene asks of the kernels
+    double area = 0.0;                          // of all triangles, frame units squared
+    double radius = 0.0;                        // of the bounding sphere about the origin, frame units
+    glm::vec3 low{0.0f};                        // bounds of the triangles, padded
+    glm::vec3 high{0.0f};
+};
+
+}  // namespace vkcppm
