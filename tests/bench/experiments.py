@@ -29,7 +29,8 @@ def parser(description, scenes, estimators, iterations=1000):
     add("--scenes", default=",".join(scenes), help="names in scenes/, separated by commas (default: %(default)s)")
     add("--estimators", default=",".join(estimators), help="as vkcppm race takes them (default: %(default)s)")
     add("--iterations", type=int, default=iterations, help="default: %(default)s")
-    add("--photons", type=int, default=16384, help="light paths an iteration (default: %(default)s; the paper's: 65536)")
+    add("--photons", type=int, default=16384,
+        help="light paths an iteration (default: %(default)s; the paper's: 65536)")
     add("--size", help="WxH, where it is not that of the references")
     add("--seeds", type=int, default=1, help="repetitions, which give intervals of confidence (default: %(default)s)")
     add("--knn", type=int, help="photons in the starting radius (default: the program's)")
@@ -63,7 +64,7 @@ def reference_of(options, scene):
 
 
 def race(options, scene, **changes):
-    """Runs a race, unless it has been run: (its race.json as a Race, its folder). changes: options of this race only."""
+    """Runs a race, unless it has been run: (its race.json as a Race, its folder). changes: options of this race."""
     chosen = argparse.Namespace(**{**vars(options), **changes})
     scene_file, reference = ROOT / "scenes" / f"{scene}.gltf", reference_of(chosen, scene)
     arguments = flags(estimators=chosen.estimators, iterations=chosen.iterations, photons=chosen.photons,
