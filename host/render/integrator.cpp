@@ -7,13 +7,11 @@
 #include <cstddef>
 #include <numbers>
 
-#include <fmt/format.h>
-
-#include "core/error.h"
 #include "render/estimators.h"
 #include "flat/features.h"
 #include "render/grid.h"
 #include "render/kernels.h"
+#include "render/status.h"
 
 namespace vkcppm {
 namespace {
@@ -335,17 +333,12 @@ bool Integrator::unblock(Pass to) {
     bool was_blocked = false;
     while (true) {
         gpu::Status status = buffer(Binding::status).download_value<gpu::Status>();
-        rays_ += (std::uint64_t(status.rays_high) << 32) + status.rays + pixels_ * (status.completed - completed_);
-        stored_ += status.stored;
-        invalid_ += status.invalid;
-        completed_ = status.completed;
         const std::uint32_t blocked = status.blocked;
-        if (status.stuck > 0) {
-            throw Error(ExitCode::internal,
-                        fmt::format("{} rays need more than {} steps of the BVH each, the limit of device '{}'",
-                                    status.stuck, params_.step_budget, device_.info().name));
-        }
-        status.rays = status.rays_high = status.stored = status.invalid = status.blocked = 0;
+        const StatusCounts counts = take_counts(status, params_.step_budget, device_.info().name);
+        rays_ += counts.rays + pixels_ * (status.completed - completed_);
+        stored_ += counts.stored;
+        invalid_ += counts.invalid;
+        completed_ = status.completed;
         buffer(Binding::status).upload_value(status);
         if (blocked == 0) return was_blocked;
         was_blocked = true;

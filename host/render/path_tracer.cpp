@@ -1,10 +1,8 @@
 #include "render/path_tracer.h"
 
-#include <fmt/format.h>
-
-#include "core/error.h"
 #include "flat/features.h"
 #include "render/kernels.h"
+#include "render/status.h"
 
 namespace vkcppm {
 namespace {
@@ -43,8 +41,9 @@ PathTracer::PathTracer(const SceneOnDevice& scene, const Camera& camera, const S
 Image PathTracer::trace() {
     gpu::Status status{};
     status.completed = batches_;
-    for (std::uint32_t first_round = 0; first_round == 0 || status.blocked != 0;) {
-        status.blocked = status.rays = status.invalid = 0;
+    bool blocked = true;
+    for (std::uint32_t first_round = 0; blocked; first_round += rounds_) {
+        if (first_round > 0 && rounds_ < most_rounds) rounds_ *= 2;
         buffers_.at(Binding::status).upload_value(status);
         commands_.begin();
         for (std::uint32_t r = 0; r < rounds_; ++r) {
@@ -56,16 +55,11 @@ Image PathTracer::trace() {
             ++pass_.calls;
             pass_.device_seconds += timing.seconds;
         }
-        first_round += rounds_;
         status = buffers_.at(Binding::status).download_value<gpu::Status>();
-        if (status.stuck > 0) {
-            throw Error(ExitCode::internal,
-                        fmt::format("{} rays need more than {} steps of the BVH each, the limit of device '{}'",
-                                    status.stuck, device_.step_budget(), device_.info().name));
-        }
-        rays_ += status.rays;
-        invalid_ += status.invalid;
-        if (status.blocked != 0 && rounds_ < most_rounds) rounds_ *= 2;
+        blocked = status.blocked != 0;
+        const StatusCounts counts = take_counts(status, device_.step_budget(), device_.info().name);
+        rays_ += counts.rays;
+        invalid_ += counts.invalid;
     }
     ++batches_;
     return {size_, buffers_.at(Binding::image).download<glm::vec3>(size_.pixels())};
