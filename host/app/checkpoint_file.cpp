@@ -265,16 +265,16 @@ void write_checkpoint(const fs::path& file, const Identity& identity, const Chec
     std::string header;
     Writer header_writer(header);
     write_header(header_writer, identity, checkpoint);
-    std::string bytes(magic);
-    bytes.reserve(fixed_bytes + header.size() + checkpoint.state.size() + sizeof(std::uint64_t));
-    Writer writer(bytes);
+    std::string fixed(magic);
+    Writer fixed_writer(fixed);
     for (const std::uint64_t word : {format, std::uint64_t(header.size()), std::uint64_t(checkpoint.state.size())}) {
-        writer.value(word);
+        fixed_writer.value(word);
     }
-    bytes += header;
-    bytes.append(reinterpret_cast<const char*>(checkpoint.state.data()), checkpoint.state.size());
-    writer.value(fnv1a_of(bytes));
-    write_file(file, bytes);
+    // The state is by far the largest: it is written from where it lies.
+    const std::string_view state(reinterpret_cast<const char*>(checkpoint.state.data()), checkpoint.state.size());
+    std::string hash;
+    Writer(hash).value(fnv1a_of(state, fnv1a_of(header, fnv1a_of(fixed))));
+    write_file(file, {fixed, header, state, hash});
 }
 
 Checkpoint read_checkpoint(const fs::path& file, const Identity& identity, std::size_t pixels) {

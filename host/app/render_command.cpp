@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <new>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -53,20 +54,24 @@ void print_stop(const StopAt& stop_at, const Rendering& rendering, bool quiet) {
     }
 }
 
-/// Where checkpoints go. A disk that is full for a while costs no more than the checkpoints of that while: a failure is
-/// told, and the render goes on.
+/// Where checkpoints go. A disk or a memory that is full for a while costs no more than the checkpoints of that while:
+/// a failure is told, and the render goes on.
 class Keeper {
 public:
     Keeper(const fs::path& file, Identity identity) : file_(file), identity_(std::move(identity)) {}
 
-    void keep(const Checkpoint& checkpoint) {
+    void keep(std::uint64_t iterations, const TakeCheckpoint& take) {
         failure_.reset();
         try {
-            write_checkpoint(file_, identity_, checkpoint);
+            write_checkpoint(file_, identity_, take());
         } catch (const Error& error) {
+            if (error.code() != ExitCode::cannot_write) throw;
             failure_ = error;
-            print_message(fmt::format("warning: no checkpoint after {} iterations: {}", checkpoint.report.iterations,
-                                      error.what()));
+        } catch (const std::bad_alloc&) {
+            failure_ = Error(ExitCode::cannot_write, fmt::format("cannot write {}: out of memory", file_.string()));
+        }
+        if (failure_) {
+            print_message(fmt::format("warning: no checkpoint after {} iterations: {}", iterations, failure_->what()));
         }
     }
 
@@ -189,7 +194,9 @@ void execute(const RenderOptions& options) {
     if (options.checkpoint) {
         keeper.emplace(*options.checkpoint, identity);
         checkpointing.every = options.checkpoint_every;
-        checkpointing.keep = [&](const Checkpoint& checkpoint) { keeper->keep(checkpoint); };
+        checkpointing.keep = [&](std::uint64_t iterations, const TakeCheckpoint& take) {
+            keeper->keep(iterations, take);
+        };
     }
     const Rendering rendering =
         render_with_progress(scene, options, measuring ? &*measuring : nullptr, checkpointing, device);
@@ -200,6 +207,10 @@ void execute(const RenderOptions& options) {
     if (options.stop_at) print_stop(*options.stop_at, rendering, options.quiet);
     write_outputs(options, scene, rendering);
     if (options.verbose) print_table(rendering.report);
+    if (const auto& failure = rendering.failure) {
+        throw Error(failure->code(), fmt::format("{}: {} is the picture after {} iterations", failure->what(),
+                                                 options.output.string(), rendering.report.iterations));
+    }
     if (keeper) {
         keeper->require_kept();
         if (!options.quiet) print_message("wrote " + options.checkpoint->string());

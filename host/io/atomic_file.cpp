@@ -80,9 +80,11 @@ private:
 
 }  // namespace
 
-void write_file(const fs::path& file, std::string_view bytes) {
+void write_file(const fs::path& file, std::string_view bytes) { write_file(file, {bytes}); }
+
+void write_file(const fs::path& file, std::initializer_list<std::string_view> parts) {
     Part part(file);
-    part.write(bytes);
+    for (const std::string_view bytes : parts) part.write(bytes);
     part.commit();
 }
 

@@ -2,6 +2,7 @@
 // Files that are written whole or not at all.
 
 #include <filesystem>
+#include <initializer_list>
 #include <string_view>
 
 namespace vkcppm {
@@ -10,6 +11,9 @@ namespace vkcppm {
 /// held before or all of `bytes`. A symbolic link stays a link: what it points to is replaced.
 /// Throws Error(cannot_write) with the file and the reason, after removing the temporary file.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
+
+/// The same of several parts, one after another.
+void write_file(const std::filesystem::path& file, std::initializer_list<std::string_view> parts);
 
 /// Throws Error(cannot_write) where write_file would fail for want of a folder or of permission. Leaves no trace.
 void check_writable(const std::filesystem::path& file);

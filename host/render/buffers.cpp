@@ -4,6 +4,7 @@
 #include <cassert>
 #include <utility>
 
+#include "core/error.h"
 #include "shared/types.h"
 
 namespace vkcppm {
@@ -88,9 +89,17 @@ void Buffers::allocate(Binding binding, std::uint64_t entries) {
 }
 
 void Buffers::allocate_bytes(Binding binding, std::uint64_t bytes) {
-    // The old one first: there may not be room for both.
-    buffers_.erase(binding);
-    bindings_.bind(binding, buffers_.emplace(binding, Buffer(device_, binding, bytes)).first->second);
+    const auto put = [&](std::uint64_t size) {
+        // The old one first: there may not be room for both.
+        buffers_.erase(binding);
+        bindings_.bind(binding, buffers_.emplace(binding, Buffer(device_, binding, size)).first->second);
+    };
+    try {
+        put(bytes);
+    } catch (const Error&) {
+        put(0);  // kernels that do not read it can still run
+        throw;
+    }
 }
 
 void Buffers::lend(Binding binding, const Buffer& buffer) {

@@ -74,7 +74,7 @@ Rendering render(const Scene& scene, const Settings& wanted, Device& device, con
         kept_at = watch.wall();
         kept = integrator.completed();
         book();
-        checkpointing.keep({result.report, result.curve, integrator.save()});
+        checkpointing.keep(kept, [&] { return Checkpoint{result.report, result.curve, integrator.save()}; });
     };
     CurvePoint latest;
     std::optional<LatestError> error;
@@ -89,13 +89,22 @@ Rendering render(const Scene& scene, const Settings& wanted, Device& device, con
         const bool near = measuring && measuring->stop_at && error && error->value <= *measuring->stop_at;
         return integrator.completed() >= settings.iterations || late || near;
     };
-    bool going = true;
-    while (going && !ended()) {
+    const auto submit = [&] {
         if (on_hash) {
             for (const auto& [pass, hash] : integrator.run_hashed()) on_hash(integrator.completed(), pass, hash);
         } else {
             integrator.run(submission_size(integrator.completed(), watch.wall(), settings,
                                            [&](std::uint32_t done) { return is_measured(measuring, done); }));
+        }
+    };
+    bool going = true;
+    while (going && !ended()) {
+        try {
+            submit();
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::out_of_device_memory || integrator.completed() == 0) throw;
+            result.failure = error;
+            break;
         }
         const std::uint32_t done = integrator.completed();
         if (is_measured(measuring, done)) {
@@ -106,7 +115,7 @@ Rendering render(const Scene& scene, const Settings& wanted, Device& device, con
         if (checkpointing.keep && watch.wall() - kept_at >= checkpointing.every) watch.off_the_clock(keep);
     }
     book();
-    if (checkpointing.keep && kept < integrator.completed()) keep();
+    if (checkpointing.keep && kept < integrator.completed() && !result.failure) keep();
     if (measuring && (result.curve.empty() || result.curve.back().iterations < integrator.completed())) {
         if (latest.iterations < integrator.completed()) take_measure();
         result.curve.push_back(latest);

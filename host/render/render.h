@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/curve.h"
+#include "core/error.h"
 #include "core/image.h"
 #include "core/metrics.h"
 #include "render/checkpoint.h"
@@ -46,11 +47,15 @@ struct Progress {
 /// Called between iterations; false ends the render after the iteration that is done.
 using KeepGoing = std::function<bool(const Progress&)>;
 
+/// The state after the iterations that are done. Throws std::bad_alloc where the host has no memory for it.
+using TakeCheckpoint = std::function<Checkpoint()>;
+
 /// Where a render goes on from, and what becomes of the states it passes.
 struct Checkpointing {
-    const Checkpoint* from = nullptr;                  // null: it starts afresh
-    double every = 60.0;                               // s of rendering between two that are kept
-    std::function<void(const Checkpoint&)> keep = {};  // called so often, and once the render has ended
+    const Checkpoint* from = nullptr;  // null: it starts afresh
+    double every = 60.0;               // s of rendering between two that are kept
+    /// Called so often, and once the render has ended.
+    std::function<void(std::uint64_t iterations, const TakeCheckpoint&)> keep = {};
 };
 
 /// Told the hash of what a pass of an iteration wrote; iterations count from 1.
@@ -65,12 +70,15 @@ struct Rendering {
     /// ppm.statistic (over its threshold), ppm.iterations, Z (m along the camera's axis), Albedo.R/G/B, N.X/Y/Z.
     std::map<std::string, std::vector<float>> aovs;
     std::vector<std::string> warnings;  // what went wrong on the way, one line each
+    std::optional<Error> failure;       // why it ended before its bounds: all is of the iterations done by then
 };
 
 /// Renders `scene` by the estimator of the settings. Throws Error on a setting out of range (usage), on a scene or
 /// image that does not fit the device (out_of_device_memory), on a lost device (device_lost), on a reference of another
 /// size (usage). Where it is measured, submissions end at snapshots, or with every iteration where it stops at an
 /// error; the picture is the same, and neither Settings::seconds nor the report's seconds count the time it takes.
+/// Where what grows with the paths no longer fits the device, the picture is of the iterations before, that error is
+/// the failure, and no checkpoint is kept at the end.
 /// From a checkpoint, of the same scene and settings but for their bounds `iterations` and `seconds`, it goes on as if
 /// it had never ended: iterations, seconds, totals and curve count from the first start. on_hash: a submission is a
 /// pass, and the hash of each is told (Integrator::run_hashed); the picture is the same.

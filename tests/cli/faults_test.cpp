@@ -1,12 +1,15 @@
 // The program on a device that fails: exit code, one line, the last good picture kept. And on one whose memory the host
 // does not see: the same bits.
 
+#include <cstdint>
 #include <ostream>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "cli/program.h"
+#include "io/exr.h"
 #include "support/files/files.h"
 
 namespace vkcppm {
@@ -91,6 +94,24 @@ TEST_F(FaultLayer, MemoryThatTheHostDoesNotSeeGivesTheSameBits) {
     EXPECT_EQ(lines_of(seen).size(), 2 * (3 * 6 + 1));
     EXPECT_EQ(hashes_on("window 0 0"), seen);
     EXPECT_EQ(hashes_on("window 0 100000"), seen) << "some buffers lie in the window, others do not";
+}
+
+// What a render may have made in hours is not lost with the memory for longer paths.
+TEST_F(FaultLayer, MemoryThatIsFullInTheRenderLeavesThePictureSoFar) {
+    const Words words{scene("box"), "--size", "16x12", "--photons", "500", "--quiet"};
+    Words cut = words, whole = words;
+    cut.insert(cut.end(), {"--iterations", "64", "-o", "cut.exr"});
+    const ProcessResult result = run_on("full 3 20000", cut);
+    expect_failure(result, 71,
+                   {"out of device memory while allocating buffer 'photons'", "cut.exr is the picture after "});
+    std::uint32_t done = 0;
+    const std::string last = lines_of(result.err).back();
+    std::istringstream(last.substr(last.find("after ") + 6)) >> done;
+    ASSERT_GT(done, 0u);
+    ASSERT_LT(done, 64u);
+    whole.insert(whole.end(), {"--iterations", std::to_string(done), "-o", "whole.exr"});
+    expect_done(run_on("", whole));
+    EXPECT_EQ(read_exr(folder_ / "cut.exr"), read_exr(folder_ / "whole.exr"));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // A Vulkan layer that makes the device another one, as the environment says:
 //   VKCPPM_FAULT="vkQueueSubmit 3 -4"   the third call of the function and all after it return that VkResult
 //   VKCPPM_FAULT="heap 0 67108864"      every heap of memory has that many bytes
+//   VKCPPM_FAULT="full 3 65536"         from the third submission on there is room for so many bytes at once, no more
 //   VKCPPM_FAULT="window 0 65536"       a card of its own: its memory is not seen by the host, but for a window that is
 //                                       full once so many bytes were allocated in it; 0: there is no window
 // The program under test is the one that users have: it knows nothing of this.
@@ -19,8 +20,8 @@ namespace {
 
 struct Fault {
     std::string function;
-    int first = 1;        // call that fails
-    long long value = 0;  // VkResult, or bytes of a heap or of the window
+    int first = 1;        // call that fails, or the last submission before memory is full
+    long long value = 0;  // VkResult, or bytes
     int calls = 0;
 
     Fault() {
@@ -38,6 +39,7 @@ VkDevice the_device = VK_NULL_HANDLE;
 std::map<std::uint32_t, std::uint32_t> real_types;  // memory types of a card of its own to the driver's
 std::uint32_t window_types = 0;                     // a bit each
 VkDeviceSize in_window = 0;                         // bytes
+int submissions = 0;
 
 /// The loader's link to the next layer in the chain of a create info; takes it out of the chain.
 template <typename Link, typename Info> auto* take_link(const Info* info, VkStructureType type) {
@@ -79,6 +81,7 @@ template <typename Function> Function next(const char* name) {
 }
 
 VkResult queue_submit(VkQueue queue, std::uint32_t count, const VkSubmitInfo* submits, VkFence fence) {
+    ++submissions;
     if (fault.strikes("vkQueueSubmit")) return VkResult(fault.value);
     return next<PFN_vkQueueSubmit>("vkQueueSubmit")(queue, count, submits, fence);
 }
@@ -92,6 +95,9 @@ VkResult wait_for_fences(VkDevice device, std::uint32_t count, const VkFence* fe
 VkResult allocate_memory(VkDevice device, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks* allocator,
                          VkDeviceMemory* memory) {
     if (fault.strikes("vkAllocateMemory")) return VkResult(fault.value);
+    if (fault.function == "full" && submissions >= fault.first && info->allocationSize > VkDeviceSize(fault.value)) {
+        return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    }
     if (window_types >> info->memoryTypeIndex & 1) {
         in_window += info->allocationSize;
         if (in_window > VkDeviceSize(fault.value)) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
