@@ -12,7 +12,7 @@
 
 namespace vkcppm {
 
-std::uint32_t cells(const EstimatorRow& row, std::uint32_t rings, std::uint32_t sectors) {
+std::uint32_t cells_of_disc(const EstimatorRow& row, std::uint32_t rings, std::uint32_t sectors) {
     return rings * (row.folded ? sectors / 2 : sectors);
 }
 
@@ -21,7 +21,7 @@ std::vector<float> chi_squared_thresholds(const EstimatorRow& row, std::uint32_t
     std::vector<float> thresholds;
     if (row.statistic != Statistic::tally) return thresholds;
     for (std::uint32_t m = 1; m <= rings; ++m) {
-        const boost::math::chi_squared distribution(double(cells(row, m, sectors) - 1 - row.fitted));
+        const boost::math::chi_squared distribution(double(cells_of_disc(row, m, sectors) - 1 - row.fitted));
         thresholds.push_back(float(quantile(complement(distribution, significance))));
     }
     return thresholds;
@@ -32,7 +32,7 @@ std::vector<float> f_thresholds(const EstimatorRow& row, std::uint32_t rings, st
     std::vector<float> thresholds;
     if (row.statistic != Statistic::contribution) return thresholds;
     for (std::uint32_t m = 1; m <= rings; ++m) {
-        const double n = cells(row, m, sectors);
+        const double n = cells_of_disc(row, m, sectors);
         // Infinitely many samples: chi-squared over its degrees of freedom.
         const boost::math::chi_squared limit(n - 1.0);
         thresholds.push_back(float(quantile(complement(limit, significance)) / (n - 1.0)));
@@ -54,7 +54,7 @@ struct Kept {
 };
 
 Kept kept(const EstimatorRow& row, std::uint32_t rings, std::uint32_t sectors) {
-    const std::uint32_t disc_cells = cells(row, rings, sectors);
+    const std::uint32_t disc_cells = cells_of_disc(row, rings, sectors);
     Kept kept;
     // clang-format off
 #define IN_TALLY(rows) kept.tally = rows;

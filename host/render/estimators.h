@@ -35,7 +35,7 @@ inline constexpr std::array estimator_rows = {ESTIMATORS(ESTIMATOR_ROW)};
 // clang-format on
 
 /// Cells of the disc of the first `rings` rings of n_s = `sectors` sectors.
-std::uint32_t cells(const EstimatorRow& row, std::uint32_t rings, std::uint32_t sectors);
+std::uint32_t cells_of_disc(const EstimatorRow& row, std::uint32_t rings, std::uint32_t sectors);
 
 /// Thresholds of the test by Boost's quantiles: [rings] for chi-squared, empty for others.
 std::vector<float> chi_squared_thresholds(const EstimatorRow& row, std::uint32_t rings, std::uint32_t sectors,

@@ -14,7 +14,7 @@ constexpr std::uint32_t least_mask = 7;  // of a hash of runs of eight cells
 
 }  // namespace
 
-bool fits(const gpu::Grid& grid, const gpu::Params& params) {
+bool grid_fits(const gpu::Grid& grid, const gpu::Params& params) {
     if (grid.levels < 1 || grid.levels > params.most_levels || grid.entries > params.cells) return false;
     for (std::uint32_t level = 0; level < grid.levels; ++level) {
         const gpu::uvec4& dims = grid.dims[level];

@@ -8,7 +8,7 @@
 namespace vkcppm {
 
 /// True where kernels stay within their table of cells and their sorted photons.
-bool fits(const gpu::Grid& grid, const gpu::Params& params);
+bool grid_fits(const gpu::Grid& grid, const gpu::Params& params);
 
 /// The grid without its finest levels, so that it has at most so many: discs that looked there look at the finest that
 /// is left.

@@ -71,7 +71,7 @@ void Integrator::restore(const Report& report, std::span<const std::byte> state)
         if (row.life == Life::carried) buffer(row.binding).upload(take(buffer(row.binding).bytes()));
     }
     const auto grid = buffer(Binding::grid).download_value<gpu::Grid>();
-    if (!fits(grid, params_)) {
+    if (!grid_fits(grid, params_)) {
         throw Error(ExitCode::bad_scene,
                     fmt::format("the checkpoint's grid of {} levels in {} entries is not one of this render, which has "
                                 "room for {} in {}",

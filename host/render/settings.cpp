@@ -81,7 +81,7 @@ void check_lens(double aperture, const std::optional<double>& focus_distance) {
 /// A test of a disc in cells needs a degree of freedom in its innermost ring.
 void check_cells(const EstimatorRow& estimator, std::uint32_t sectors) {
     static_assert(MAX_SECTORS == 12);
-    if (estimator.statistic == Statistic::tally && cells(estimator, 1, sectors) < 2 + estimator.fitted) {
+    if (estimator.statistic == Statistic::tally && cells_of_disc(estimator, 1, sectors) < 2 + estimator.fitted) {
         throw Error(ExitCode::usage,
                     fmt::format("--sectors {} leave the test of {} no degree of freedom", sectors, estimator.name));
     }

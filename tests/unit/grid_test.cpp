@@ -39,18 +39,18 @@ gpu::Grid three_levels() {
 
 TEST(Grid, FitsItsTable) {
     const gpu::Grid grid = three_levels();
-    EXPECT_TRUE(fits(grid, room_for(128, 4)));
-    EXPECT_FALSE(fits(grid, room_for(64, 4))) << "120 entries in 64";
-    EXPECT_FALSE(fits(grid, room_for(128, 2))) << "three levels where there is room for two";
+    EXPECT_TRUE(grid_fits(grid, room_for(128, 4)));
+    EXPECT_FALSE(grid_fits(grid, room_for(64, 4))) << "120 entries in 64";
+    EXPECT_FALSE(grid_fits(grid, room_for(128, 2))) << "three levels where there is room for two";
     gpu::Grid overlapping = grid;
     overlapping.first[1] = 32;
-    EXPECT_FALSE(fits(overlapping, room_for(128, 4)));
+    EXPECT_FALSE(grid_fits(overlapping, room_for(128, 4)));
 }
 
 TEST(Grid, WithoutItsFinestLevels) {
     const gpu::Grid grid = three_levels(), kept = coarsest(grid, 2);
     EXPECT_EQ(kept.levels, 2u);
-    EXPECT_TRUE(fits(kept, room_for(128, 2))) << "its levels stay where they stand in the table";
+    EXPECT_TRUE(grid_fits(kept, room_for(128, 2))) << "its levels stay where they stand in the table";
     for (std::uint32_t level = 0; level < 2; ++level) {
         EXPECT_EQ(kept.dims[level], grid.dims[level + 1]);
         EXPECT_EQ(kept.cell[level], grid.cell[level + 1]);
