@@ -4,10 +4,19 @@
 #include <cstdint>
 #include <string>
 
-#include "app/options.h"
 #include "core/image.h"
+#include "core/metrics.h"
 
 namespace vkcppm {
+
+/// How glass without a volume is taken: as glTF says, or as solid where its mesh is closed.
+enum class ThinGlass { thin, solid };
+
+/// An error at which a render ends.
+struct StopAt {
+    const Metric* metric = nullptr;
+    double value = 0.0;  // > 0
+};
 
 /// Throws Error(usage): that of `option` is not `wanted`.
 [[noreturn]] void refuse(const std::string& option, const std::string& text, const std::string& wanted);

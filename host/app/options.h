@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/metrics.h"
+#include "app/option_values.h"
 #include "study/race.h"
 #include "study/reference.h"
 #include "render/settings.h"
@@ -15,20 +15,11 @@
 
 namespace vkcppm {
 
-/// How glass without a volume is taken: as glTF says, or as solid where its mesh is closed.
-enum class ThinGlass { thin, solid };
-
 /// The scene and what is done to it before anything else.
 struct SceneOptions {
     std::filesystem::path file;
     std::optional<std::filesystem::path> environment;  // EXR or Radiance
     ThinGlass thin_glass = ThinGlass::thin;
-};
-
-/// An error at which a render ends.
-struct StopAt {
-    const Metric* metric = nullptr;
-    double value = 0.0;  // > 0
 };
 
 /// vkcppm SCENE ...

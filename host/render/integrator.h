@@ -26,8 +26,8 @@ namespace vkcppm {
 
 class Integrator {
 public:
-    /// Allocates the buffers, compiles the pipelines. `scene` must outlive this, `settings` be resolved. forms: in which
-    /// kernels are compiled, those of the device where there are none; every form gives the same bits.
+    /// Allocates the buffers, compiles the pipelines. `scene` must outlive this, `settings` be resolved. forms: in
+    /// which kernels are compiled, those of the device where there are none; every form gives the same bits.
     /// Throws Error(out_of_device_memory) where the picture does not fit the device beside what is on it.
     Integrator(const SceneOnDevice& scene, const Camera& camera, const Settings& settings,
                std::vector<KernelForm> forms = {});

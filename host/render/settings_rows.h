@@ -7,7 +7,7 @@
 #include <optional>
 #include <tuple>
 
-#include "render/settings.h"
+#include "render/settings_members.h"
 #include "shared/types.h"
 
 namespace vkcppm {

@@ -1,12 +1,13 @@
-// The settings of a render, one row each. Everything else follows from the rows: the members of Settings and their
-// ranges (render/settings.h), the options of the command line and their help (app/options.cpp), what pictures,
-// statistics and checkpoints say of a render (app/record.h, app/checkpoint_file.h), the parameters of a race's entrants.
+// The settings of a render, one row each. Everything else follows from the rows: the members of Settings
+// (render/settings_members.h) and their ranges (render/settings.h), the options of the command line and their help
+// (app/options.cpp), what pictures, statistics and checkpoints say of a render (app/record.h, app/checkpoint_file.h),
+// the parameters of a race's entrants.
 //
 // Included where SETTING is defined:
 //   SETTING(member, type, default, name, kind, values, unit, help)
 //     name    of the option, without its dashes; '-' is '_' in files
 //     kind    what it decides: setting::Kind
-//     values  that it takes: a check of render/settings_rows.h. Where it depends on others, resolve_settings checks that
+//     values  that it takes: a check of render/settings_rows.h. Where it depends on others, resolve_settings checks
 //     unit    of its value: setting::Unit
 //     help    where {} is the default, {choices} the values of a list with what they are
 // The order is that of --help, of the records and of the checks.

@@ -18,9 +18,7 @@ namespace vkcppm::test {
 using Words = std::vector<std::string>;
 
 /// A scene of the project.
-inline std::string scene(const std::string& name) {
-    return (source_folder() / "scenes" / (name + ".gltf")).string();
-}
+inline std::string scene(const std::string& name) { return (source_folder() / "scenes" / (name + ".gltf")).string(); }
 
 inline std::vector<std::string> lines_of(const std::string& text) {
     std::vector<std::string> lines;

@@ -23,9 +23,9 @@ struct RaceInput {
     ExrAttributes reference_attributes;  // of that file
 };
 
-/// Version, command, scene, device, reference, what each got, names of the parameters, and of every entrant: settings, colour, files, shares of
-/// pixels won, totals and seconds of the passes, and, by the metrics' names, its error at the end, its bands against
-/// iterations and seconds with slopes, and its equal errors. Numbers that do not exist are null.
+/// Version, command, scene, device, reference, what each got, names of the parameters, and of every entrant: settings,
+/// colour, files, shares of pixels won, totals and seconds of the passes, and, by the metrics' names, its error at the
+/// end, its bands against iterations and seconds with slopes, and its equal errors. Numbers that do not exist are null.
 /// Member "curves" of an entrant's "runs" holds every snapshot of every seed; all else is derived from them.
 nlohmann::ordered_json race_json(const RaceOptions& options, const RaceInput& input, const RaceResult& result,
                                  const RacePictures& pictures);

@@ -13,9 +13,7 @@
 namespace vkcppm::test {
 
 /// A scene of the project: scenes/<name>.gltf.
-inline Scene project_scene(const std::string& name) {
-    return load_gltf(source_folder() / "scenes" / (name + ".gltf"));
-}
+inline Scene project_scene(const std::string& name) { return load_gltf(source_folder() / "scenes" / (name + ".gltf")); }
 
 /// Why a test is skipped that goes over files which the project does not have: tests/README.md says which.
 inline constexpr const char* no_collections = "the collections of tests/README.md do not stand beside the project";

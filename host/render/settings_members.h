@@ -1,0 +1,23 @@
+#pragma once
+// The settings of a render as values: a member a row of render/settings_table.h. Defaults are the paper's (Lin et al.
+// 2020, supplementary section 1).
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/image.h"
+
+namespace vkcppm {
+
+/// Beyond, the counter of random numbers starts again and iterations repeat.
+inline constexpr std::uint32_t max_iterations = (1u << 30) - 1;
+
+struct Settings {
+#define SETTING(member, type, standard, name, kind, values, unit, help) type member = standard;
+#include "render/settings_table.h"
+#undef SETTING
+    bool operator==(const Settings&) const = default;
+};
+
+}  // namespace vkcppm
