@@ -326,7 +326,9 @@ TEST_F(FilmSum, ManyAdditionsDoNotStagnate) {
     const auto run = [&](std::uint64_t launches) {
         commands.begin();
         for (std::uint64_t i = 0; i < launches; ++i) commands.launch(kernel, count, {.iteration = 0, .last_round = 1});
-        commands.finish();
+        const std::vector<Timing> timings = commands.finish();
+        EXPECT_EQ(timings.size(), launches) << "every launch is timed";
+        for (const Timing& timing : timings) ASSERT_TRUE(timing.seconds >= 0.0 && timing.seconds < 60.0);
     };
     set(first);
     run(1);
