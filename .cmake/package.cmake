@@ -12,6 +12,8 @@ install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT pr
 
 set(CPACK_GENERATOR DEB TGZ)
 set(CPACK_INSTALL_CMAKE_PROJECTS "${CMAKE_BINARY_DIR};${PROJECT_NAME};program;/")
+set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR})
+set(CPACK_SYSTEM_NAME ${CMAKE_SYSTEM_NAME}-${CMAKE_SYSTEM_PROCESSOR})
 set(CPACK_STRIP_FILES ON)
 set(CPACK_PACKAGE_VENDOR "The authors of vkcppm")
 set(CPACK_PACKAGE_CONTACT "${CPACK_PACKAGE_VENDOR} <vkcppm@localhost>")
@@ -23,7 +25,8 @@ set(CPACK_RESOURCE_FILE_LICENSE ${CMAKE_CURRENT_SOURCE_DIR}/LICENSE)
 
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # Depends: by dpkg-shlibdeps, of dpkg-dev
+set(CPACK_DEBIAN_PACKAGE_DEPENDS libvulkan1)  # opened by name while the program runs
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)        # and what it is linked to, by dpkg-shlibdeps of dpkg-dev
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS mesa-vulkan-drivers)
 # Before a package is made of what was installed.
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/debian.cmake)

@@ -89,7 +89,7 @@ std::string options_of(const CommandText& command) {
         for (std::string& name : names) name = fmt::format("\\fB{}\\fR", roff(name));
         text += fmt::format(".TP\n{}", fmt::join(names, ", "));
         if (!option.value.empty()) text += fmt::format(" \\fI{}\\fR", roff(option.value));
-        text += "\n" + roff_lines(option.help, !option.choices.empty());
+        text += fmt::format("\n{}", roff_lines(option.help, !option.choices.empty()));
     }
     return text;
 }

@@ -6,9 +6,9 @@
 // Included where SETTING is defined:
 //   SETTING(member, type, default, name, kind, values, unit, help)
 //     name    of the option, without its dashes; '-' is '_' in files
-//     kind    what it decides: setting::Kind
-//     values  that it takes: a check of render/settings_rows.h. Where it depends on others, resolve_settings checks
-//     unit    of its value: setting::Unit
+//     kind    what it decides, from which follows who takes it: setting::Kind
+//     values  that it takes: of render/settings_rows.h; what depends on several settings is in resolve_settings
+//     unit    of its value, from which follows how it is written: setting::Unit
 //     help    where {} is the default, {choices} the values of a list with what they are
 // The order is that of --help, of the records and of the checks.
 // clang-format off

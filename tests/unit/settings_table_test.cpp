@@ -55,12 +55,12 @@ std::array<Settings, 2> two_settings(const auto& row) {
     return settings;
 }
 
-/// The words that give a row the value that `settings` has, as their record tells it.
-Words words_of(const auto& row, const Settings& settings) {
+/// The words that give the option of that name the value that `settings` has, as their record tells it.
+Words words_of(const std::string& name, const Settings& settings) {
     const nlohmann::ordered_json json = settings_json(settings);
-    const auto value = json.find(json_name(row.name));
+    const auto value = json.find(json_name(name));
     if (value == json.end()) return {};
-    const std::string option = std::string("--") + row.name;
+    const std::string option = fmt::format("--{}", name);
     if (value->is_boolean()) return *value ? Words{option} : Words{};
     return {option, value->is_string() ? value->template get<std::string>() : json_text(*value)};
 }
@@ -74,7 +74,9 @@ Options parse(Words words) {
 bool is_taken(Words words, const Words& more) {
     words.insert(words.end(), more.begin(), more.end());
     const auto error = test::thrown_by([&] { parse(words); });
-    if (error) EXPECT_EQ(error->code(), ExitCode::usage) << error->what();
+    if (error) {
+        EXPECT_EQ(error->code(), ExitCode::usage) << error->what();
+    }
     return !error;
 }
 
@@ -144,12 +146,12 @@ TEST(SettingsTable, TheCommandLineTakesBackWhatARecordTells) {
         if (row.kind == Kind::internal) return;
         for (const Settings& settings : two_settings(row)) {
             Words words = {"s.gltf"};
-            for (const std::string& word : words_of(row, settings)) words.push_back(word);
+            for (const std::string& word : words_of(row.name, settings)) words.push_back(word);
             const Settings got = std::get<RenderOptions>(parse(words)).settings;
             EXPECT_EQ(got.*row.member, settings.*row.member) << row.name;
         }
         all.*row.member = two_settings(row)[1].*row.member;
-        for (const std::string& word : words_of(row, all)) all_words.push_back(word);
+        for (const std::string& word : words_of(row.name, all)) all_words.push_back(word);
     });
     const Settings got = std::get<RenderOptions>(parse(all_words)).settings;
     EXPECT_EQ(got, all);
@@ -160,7 +162,7 @@ TEST(SettingsTable, EveryCommandTakesTheKindsThatItShould) {
     setting::for_each([&](const auto& row) {
         SCOPED_TRACE(row.name);
         const bool common = row.kind == Kind::bound || row.kind == Kind::picture || row.kind == Kind::view;
-        Words words = words_of(row, two_settings(row)[1]);
+        Words words = words_of(row.name, two_settings(row)[1]);
         EXPECT_EQ(is_taken({"s.gltf"}, words), row.kind != Kind::internal);
         EXPECT_EQ(is_taken({"race", "s.gltf", "-o", "d"}, words), common || row.kind == Kind::parameter);
         EXPECT_EQ(is_taken({"reference", "s.gltf", "-o", "r.exr"}, words), common);
