@@ -4,14 +4,17 @@
 #pragma once
 #include "shared/types.h"
 #include "vk/binding.h"
-namespace vkcppm::gpu {
 #endif
 
 // Storage bindings that no header under test declares.
 #ifdef __cplusplus
+namespace vkcppm {
 inline constexpr Binding PROBE_INPUT = Binding::paths;
 inline constexpr Binding PROBE_OUTPUT = Binding::image;
 inline constexpr Binding PROBE_VIEW = Binding::grid;
+}  // namespace vkcppm
+
+namespace vkcppm::gpu {
 #else
 #define PROBE_INPUT PATHS(BINDING_NUMBER)
 #define PROBE_OUTPUT IMAGE(BINDING_NUMBER)

@@ -14,8 +14,6 @@
 namespace vkcppm::test {
 namespace {
 
-void PrintTo(const SampleModel& model, std::ostream* stream) { *stream << model.name; }
-
 class SampleModels : public testing::TestWithParam<SampleModel> {};
 
 TEST_P(SampleModels, LoadWithTheirTrianglesAndWarnings) {

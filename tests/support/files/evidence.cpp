@@ -4,6 +4,7 @@
 #include <cstring>
 #include <utility>
 
+#include <fmt/format.h>
 #include <glm/common.hpp>
 #include <gtest/gtest.h>
 
@@ -31,7 +32,7 @@ bool same_bits(const glm::vec3& a, const glm::vec3& b) { return std::memcmp(&a, 
 }  // namespace
 
 void leave_pictures(const Image& got, const Image& wanted, const std::string& part) {
-    const std::string name = name_of_running_test() + (part.empty() ? "" : "_" + identifier(part));
+    const std::string name = fmt::format("{}{}{}", name_of_running_test(), part.empty() ? "" : "_", identifier(part));
     const std::string base = (failure_folder() / name).string();
     std::vector<std::pair<std::string, Image>> pictures = {{"got", got}, {"wanted", wanted}};
     if (got.extent == wanted.extent) pictures.emplace_back("difference", absolute_difference(got, wanted));
