@@ -30,9 +30,8 @@ void refuse(const std::string& option, const std::string& text, const std::strin
 std::uint32_t parse_whole(const std::string& option, const std::string& text) {
     std::string_view rest = text;
     std::uint32_t number = 0;
-    if (!take_number(rest, number) || !rest.empty()) {
+    if (!take_number(rest, number) || !rest.empty())
         refuse(option, text, fmt::format("a whole number from 0 to {}", std::numeric_limits<std::uint32_t>::max()));
-    }
     return number;
 }
 
@@ -44,18 +43,14 @@ double parse_real(const std::string& option, const std::string& text) {
 }
 
 std::string parse_name(const std::string& option, const std::string& text) {
-    if (text.empty()) {
-        refuse(option, text, "a name");  // an unset variable of a shell must not mean the default
-    }
+    if (text.empty()) refuse(option, text, "a name");  // an unset variable of a shell must not mean the default
     return text;
 }
 
 double parse_exposure(const std::string& option, const std::string& text) {
     constexpr double most = 128.0;  // stops: any float becomes white or black
     const double stops = parse_real(option, text);
-    if (std::abs(stops) > most) {
-        refuse(option, text, fmt::format("a number from {} to {}", -most, most));
-    }
+    if (std::abs(stops) > most) refuse(option, text, fmt::format("a number from {} to {}", -most, most));
     return stops;
 }
 
@@ -64,9 +59,8 @@ Extent parse_size(const std::string& option, const std::string& text) {
     Extent size;
     const bool width = take_number(rest, size.width) && rest.starts_with('x');
     if (width) rest.remove_prefix(1);
-    if (!width || !take_number(rest, size.height) || !rest.empty()) {
+    if (!width || !take_number(rest, size.height) || !rest.empty())
         refuse(option, text, "WIDTHxHEIGHT in pixels, such as 512x384");
-    }
     return size;
 }
 
@@ -96,9 +90,8 @@ StopAt parse_stop_at(const std::string& option, const std::string& text) {
     if (equals == std::string::npos) refuse(option, text, "METRIC=VALUE, such as relmse_trimmed=0.0035");
     StopAt result{&find_metric(option, text.substr(0, equals))};
     std::string_view rest = std::string_view(text).substr(equals + 1);
-    if (!take_number(rest, result.value) || !rest.empty() || !std::isfinite(result.value) || !(result.value > 0.0)) {
+    if (!take_number(rest, result.value) || !rest.empty() || !std::isfinite(result.value) || !(result.value > 0.0))
         refuse(option, text, "a metric and a finite number greater than 0");
-    }
     return result;
 }
 

@@ -62,7 +62,7 @@ Words words_of(const std::string& name, const Settings& settings) {
     if (value == json.end()) return {};
     const std::string option = fmt::format("--{}", name);
     if (value->is_boolean()) return *value ? Words{option} : Words{};
-    return {option, value->is_string() ? value->template get<std::string>() : json_text(*value)};
+    return {option, value->is_string() ? value->get<std::string>() : json_text(*value)};
 }
 
 Options parse(Words words) {

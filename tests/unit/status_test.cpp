@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "render/status.h"
+#include "shared/kernels.h"
 #include "support/thrown.h"
 
 namespace vkcppm {
