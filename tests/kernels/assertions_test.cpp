@@ -1,4 +1,4 @@
-// This group runs with the assertions of host/flat, host/render and host/vk on, whatever the build's type.
+// This group runs with the assertions of host/flat and host/render on, whatever the build's type.
 
 #include <gtest/gtest.h>
 
