@@ -1,4 +1,4 @@
-"""What the scripts of the paper's experiments share: their options, races that are run once, sections of RESULTS.md.
+"""What the scripts of the paper's experiments share: their options, races that are run once, sections of results/.
 
 The paper: Lin et al., "CPPM: Chi-squared Progressive Photon Mapping", ACM Transactions on Graphics 39(6), 2020, and its
 supplementary material. A race that has been run stays under out/experiments, in a folder named after the scene and a
@@ -19,6 +19,7 @@ import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 RACES = ROOT / "out" / "experiments"
+RESULTS = ROOT / "tests" / "bench" / "results"  # a file a question
 SCENES = ("box", "clocks", "conference", "cornell", "diamond", "dining", "glass", "sibenik", "sponza", "torus", "water")
 
 
@@ -40,7 +41,7 @@ def parser(description, scenes, estimators, iterations=1000):
         help="folder of NAME.exr (default: scenes/references)")
     add("--make-references", metavar="TIME", help="make what is absent there by vkcppm reference, in this time each")
     add("--program", type=pathlib.Path, default=ROOT / "build" / "vkcppm", help="default: build/vkcppm")
-    add("--results", type=pathlib.Path, default=ROOT / "tests" / "bench" / "RESULTS.md",
+    add("--results", type=pathlib.Path, default=RESULTS / "paper.md",
         help="file whose section is written; figures go to the folder figures beside it (default: %(default)s)")
     return result
 

@@ -1,5 +1,5 @@
 // How fast the renderer is on the device chosen: prints a Markdown table a subject, and writes them as JSON. By hand,
-// on an idle machine: tests/bench/speed, which keeps the figures in RESULTS.md.
+// on an idle machine: tests/bench/speed, which keeps the figures in results/speed.md.
 
 #include <cstdlib>
 #include <fstream>
