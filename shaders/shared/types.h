@@ -147,8 +147,8 @@ FEATURE_TABLE(FEATURE_BIT_OF_MATERIAL, FEATURE_BIT, FEATURE_BIT)
 // Top bit of TriangleShading::material: the three normals are the geometric normal.
 #define SHADING_FLAT 0x80000000u
 
-// 4-wide node, 64 bytes, read as 4 uvec4 texels. Box of child c on axis a: origin[a] + 2^(exponent[a] - 127) * byte c of
-// q[a].
+// 4-wide node, 64 bytes, read as 4 uvec4 texels. Box of child c on axis a:
+// origin[a] + 2^(exponent[a] - 127) * byte c of q[a].
 struct BvhNode {
     vec3 origin;
     uint exponents;    // biased exponents of the cell size, x | y << 8 | z << 16; bit 24 + c: there is a child c

@@ -1,7 +1,7 @@
 #version 460
 // Nearest hits of rays. The lanes of a SIMD group share launch.round rays for each of them, and one takes the next ray
-// as soon as it is done with its own, as shaders/kernels/photon.comp does. launch.argument: steps that a lane may take in
-// all.
+// as soon as it is done with its own, as shaders/kernels/photon.comp does. launch.argument: steps that a lane
+// may take in all.
 #include "include/kernel.glsl"
 #include "include/scene.glsl"
 #include "include/traverse.glsl"

@@ -114,7 +114,8 @@ protected:
     F(1, TriangleGeometry) F(2, TriangleShading) F(3, SurfaceMaterial) F(4, Light) F(5, Photon) F(6, PhotonFlux)      \
         F(7, HitPosition) F(8, HitWeight) F(9, HitEmission) F(10, Gathered) F(11, PixelState) F(12, Aovs) F(13, Film) \
             F(14, PathState) F(15, Cursor) F(16, Grid) F(17, Status) F(18, Params) F(19, Launch)                      \
-                F(20, TextureLookup) F(21, HitSurface) F(22, TraceState) F(23, LightRay) F(24, EyeState) F(25, SearchState)
+                F(20, TextureLookup) F(21, HitSurface) F(22, TraceState) F(23, LightRay) \
+                    F(24, EyeState) F(25, SearchState)
 // clang-format on
 
 TEST_F(Layout, EveryMemberStandsWhereTheHostPutsIt) {

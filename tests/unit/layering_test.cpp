@@ -29,7 +29,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"scene/diagnosis", {"core", "scene", "scene/diagnosis"}},
     {"vk", {"core", "vk", "shared"}},
     {"io", {"core", "io"}},
-    {"flat", {"core", "scene", "flat", "shared"}},
+    {"flat", {"core", "scene", "scene/diagnosis", "flat", "shared"}},
     {"render", {"core", "scene", "vk", "flat", "render", "shared"}},
     {"study", {"core", "scene", "vk", "flat", "render", "study"}},
     {"app",
