@@ -1,5 +1,5 @@
 #pragma once
-// A binary tree over the median of the centroids: enough to make the path tracer bearable.
+// A binary tree by the surface area heuristic: enough to make the path tracer bearable.
 
 #include <cstdint>
 #include <optional>
@@ -27,7 +27,7 @@ private:
         glm::dvec3 low, high;
         std::uint32_t first = 0, count = 0;  // leaf: range of order_; inner (count 0): first is the right child
     };
-    std::uint32_t build(std::uint32_t first, std::uint32_t count);
+    std::uint32_t build(std::uint32_t first, std::uint32_t count, std::uint32_t depth);
     std::optional<Hit> walk(Ray ray, bool any) const;
 
     const Scene& scene_;
