@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "app/option_values.h"
+#include "render/settings.h"
 #include "study/race.h"
 #include "study/reference.h"
-#include "render/settings.h"
 #include "vk/device.h"
 
 namespace vkcppm {

@@ -43,7 +43,6 @@ void execute(const ReferenceOptions& options) {
     print_warnings(scene.warnings);
     resolve_reference(options.settings, scene);  // a bad value is told before the device is asked for
     Device device(options.device);
-    require_validation(options.device, device);
     const PipelineCache cache(device, options.device.cache);
     const Reference reference = refine_with_progress(scene, options, device);
     print_warnings(reference.warnings);

@@ -5,8 +5,8 @@
 
 #include "app/options.h"
 #include "io/exr.h"
-#include "study/reference.h"
 #include "scene/scene.h"
+#include "study/reference.h"
 
 namespace vkcppm {
 

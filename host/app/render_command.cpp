@@ -65,7 +65,7 @@ public:
         try {
             write_checkpoint(file_, identity_, take());
         } catch (const Error& error) {
-            if (error.code() != ExitCode::cannot_write) throw;
+            if (error.code() != ExitCode::cannot_write && error.code() != ExitCode::out_of_device_memory) throw;
             failure_ = error;
         } catch (const std::bad_alloc&) {
             failure_ = Error(ExitCode::cannot_write, fmt::format("cannot write {}: out of memory", file_.string()));
@@ -183,7 +183,6 @@ void execute(const RenderOptions& options) {
         options.resume ? std::optional(read_checkpoint(*options.resume, identity, settings.size->pixels()))
                        : std::nullopt;
     Device device(options.device);
-    require_validation(options.device, device);
     const PipelineCache cache(device, options.device.cache);
     Checkpointing checkpointing;
     std::optional<Keeper> keeper;

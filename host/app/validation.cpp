@@ -10,12 +10,6 @@
 
 namespace vkcppm {
 
-void require_validation(const Device::Options& options, const Device& device) {
-    if (options.validate && !device.validating()) {
-        throw Error(ExitCode::no_device, "--validate: the Vulkan validation layer is not installed");
-    }
-}
-
 void check_validation(const Device& device) {
     const std::vector<std::string> messages = device.validation_messages();
     for (const std::string& message : messages) print_message("validation: " + message);

@@ -23,8 +23,8 @@ struct FlatScene {
     std::vector<Triangle> sources;                 // of the scene, corners in the order in which kernels see them
     std::vector<gpu::TriangleShading> shading;
     std::vector<glm::vec4> texcoords;       // [3 x triangles] both sets of a corner, where there are textures
-    std::vector<glm::uvec4> vertex_colors;  // [2 x triangles] half floats, where there are any
-    std::vector<glm::uvec4> tangents;       // [triangles] where there are normal maps
+    std::vector<glm::uvec4> vertex_colors;  // [2 x triangles] 4 half floats a corner, then 2 unused words
+    std::vector<glm::uvec4> tangents;       // [triangles] an octahedral tangent a corner, then TANGENTS_*
     std::vector<gpu::SurfaceMaterial> materials;
     std::vector<gpu::TextureLookup> textures;
     std::vector<std::uint32_t> images;   // texels of all images, a word each

@@ -171,7 +171,7 @@ void add_attributes(const Scene& scene, FlatScene& flat) {
                 const glm::vec4& tangent = scene.tangents[vertex[c]];
                 if (tangent.w == 0.0f) continue;
                 packed[c] = pack_direction(glm::vec3(tangent));
-                packed.w |= 1u << c | (tangent.w < 0.0f ? 8u << c : 0u);
+                packed.w |= 1u << c | (tangent.w < 0.0f ? TANGENTS_TURNED << c : 0u);
             }
             flat.tangents.push_back(packed);
         }

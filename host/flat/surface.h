@@ -36,7 +36,7 @@ struct SurfaceTraits {
     bool is_rough() const { return (rough && (metal || coat || glass)) || rough_clearcoat; }
 };
 
-/// least_alpha: as of least_alphas() in scene/alpha.h.
+/// least_alpha: as of least_alphas() in scene/diagnosis/alpha.h.
 SurfaceTraits traits_of(const Material& material, float least_alpha);
 
 /// [materials] Those of every material of the scene.

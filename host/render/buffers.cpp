@@ -53,6 +53,7 @@ std::uint64_t each(Entries entries, const Counts& counts) {
         case Entries::levels: return counts.levels;
         case Entries::where_aovs: return counts.aovs ? 1 : 0;
         case Entries::where_glossy: return counts.glossy ? 1 : 0;
+        case Entries::where_asking: return counts.asking ? 1 : 0;
         case Entries::where_traced: return counts.traced ? 1 : 0;
     }
     return 0;
@@ -92,6 +93,7 @@ void Buffers::allocate_bytes(Binding binding, std::uint64_t bytes) {
     const auto put = [&](std::uint64_t size) {
         // The old one first: there may not be room for both.
         buffers_.erase(binding);
+        lent_.erase(binding);
         bindings_.bind(binding, buffers_.emplace(binding, Buffer(device_, binding, size)).first->second);
     };
     try {
@@ -103,6 +105,7 @@ void Buffers::allocate_bytes(Binding binding, std::uint64_t bytes) {
 }
 
 void Buffers::lend(Binding binding, const Buffer& buffer) {
+    buffers_.erase(binding);
     bindings_.bind(binding, buffer);
     lent_[binding] = &buffer;
 }

@@ -41,6 +41,7 @@ enum class Entries {
     levels,
     where_aovs,    // one, where the settings ask for further channels
     where_glossy,  // one, in glossy scenes
+    where_asking,  // one, where eye paths ask for lights
     where_traced,  // one, in the path tracer
 };
 
@@ -73,6 +74,7 @@ struct Counts {
     std::uint64_t levels = 0;  // a photon slot
     bool aovs = false;
     bool glossy = false;
+    bool asking = false;
     bool traced = false;
 };
 
@@ -103,7 +105,7 @@ public:
     /// Binds a buffer that lives elsewhere.
     void lend(Binding binding, const Buffer& buffer);
 
-    /// Asserts that there is one.
+    /// There must be one of its own: not one that was lent.
     Buffer& at(Binding binding) { return buffers_.at(binding); }
     const Buffer& at(Binding binding) const { return buffers_.at(binding); }
 

@@ -6,9 +6,10 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <utility>
 
-#include "render/estimators.h"
 #include "flat/features.h"
+#include "render/estimators.h"
 #include "render/grid.h"
 #include "render/kernels.h"
 #include "render/status.h"
@@ -64,6 +65,7 @@ Integrator::Integrator(const SceneOnDevice& on_device, const Camera& camera, con
     counts_.nearest = settings.knn;
     counts_.aovs = settings.aovs;
     counts_.glossy = (features & FEATURE_GLOSS) != 0;
+    counts_.asking = ASKS_FOR_LIGHTS(features);
     on_device.lend(buffers_);
     buffers_.allocate(
         counts_, [](const BufferRow& row) { return row.entries != Entries::uploaded && row.per != Per::photon_slot; });
@@ -269,13 +271,13 @@ void Integrator::launch_rounds(KernelId id, std::optional<std::uint64_t> invocat
 
 /// Submits, waits, and books the times by kernel.
 void Integrator::finish() {
+    const std::vector<KernelId> launched = std::exchange(launched_, {});
     const std::vector<Timing> timings = commands_.finish();  // in the order of the launches
     for (std::size_t i = 0; i < timings.size(); ++i) {
-        PassReport& report = kernels_.at(launched_[i]).report;
+        PassReport& report = kernels_.at(launched[i]).report;
         ++report.calls;
         report.device_seconds += timings[i].seconds;
     }
-    launched_.clear();
 }
 
 /// Iterations one by one until every kernel's form is chosen, or up to `target`.

@@ -112,6 +112,7 @@ private:
     void choose_kernels(std::uint32_t target);
     bool unblock(Pass to);
     std::uint64_t hash_of(Pass pass) const;
+    std::uint64_t state_bytes() const;
 
     Device& device_;
     Bindings bindings_;

@@ -37,8 +37,18 @@ private:
 
 }  // namespace
 
+/// Bytes of save().
+std::uint64_t Integrator::state_bytes() const {
+    std::uint64_t bytes = sizeof(gpu::Status) - planned_from;
+    for (const BufferRow& row : buffer_rows()) {
+        if (row.life == Life::carried) bytes += buffers_.at(row.binding).bytes();
+    }
+    return bytes;
+}
+
 std::vector<std::byte> Integrator::save() const {
     std::vector<std::byte> state;
+    state.reserve(state_bytes());
     const auto append = [&](std::span<const std::byte> bytes) {
         state.insert(state.end(), bytes.begin(), bytes.end());
     };
@@ -54,9 +64,7 @@ std::vector<std::byte> Integrator::save() const {
 
 void Integrator::restore(const Report& report, std::span<const std::byte> state) {
     gpu::Status status{};
-    std::uint64_t bytes = sizeof(status) - planned_from;
-    for (const BufferRow& row : buffer_rows())
-        bytes += row.life == Life::carried ? buffers_.at(row.binding).bytes() : 0;
+    const std::uint64_t bytes = state_bytes();
     if (state.size() != bytes) {
         throw Error(ExitCode::bad_scene,
                     fmt::format("the checkpoint's state has {} bytes, that of this render {}", state.size(), bytes));

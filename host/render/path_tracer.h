@@ -4,9 +4,9 @@
 #include <cstdint>
 
 #include "core/image.h"
+#include "render/buffers.h"
 #include "render/kernels.h"
 #include "render/report.h"
-#include "render/buffers.h"
 #include "render/scene_on_device.h"
 #include "render/settings.h"
 #include "vk/device.h"

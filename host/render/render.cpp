@@ -101,9 +101,9 @@ Rendering render(const Scene& scene, const Settings& wanted, Device& device, con
     while (going && !ended()) {
         try {
             submit();
-        } catch (const Error& error) {
-            if (error.code() != ExitCode::out_of_device_memory || integrator.completed() == 0) throw;
-            result.failure = error;
+        } catch (const Error& full) {
+            if (full.code() != ExitCode::out_of_device_memory || integrator.completed() == 0) throw;
+            result.failure = full;
             break;
         }
         const std::uint32_t done = integrator.completed();

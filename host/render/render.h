@@ -70,7 +70,9 @@ struct Rendering {
     /// ppm.statistic (over its threshold), ppm.iterations, Z (m along the camera's axis), Albedo.R/G/B, N.X/Y/Z.
     std::map<std::string, std::vector<float>> aovs;
     std::vector<std::string> warnings;  // what went wrong on the way, one line each
-    std::optional<Error> failure;       // why it ended before its bounds: all is of the iterations done by then
+    /// Why it ended before its bounds: the picture is of the iterations done by then, aovs and counts of the one that
+    /// was begun as well.
+    std::optional<Error> failure;
 };
 
 /// Renders `scene` by the estimator of the settings. Throws Error on a setting out of range (usage), on a scene or

@@ -9,9 +9,9 @@
 #include <glm/geometric.hpp>
 
 #include "core/error.h"
+#include "flat/bounds.h"
 #include "flat/features.h"
 #include "render/kernel_choice.h"
-#include "flat/bounds.h"
 
 namespace vkcppm {
 namespace {

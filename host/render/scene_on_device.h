@@ -17,6 +17,8 @@ class SceneOnDevice {
 public:
     /// Uploads the scene, which must outlive this. Throws Error(out_of_device_memory) where it does not fit the device.
     SceneOnDevice(Device& device, const FlatScene& scene);
+    SceneOnDevice(const SceneOnDevice&) = delete;  // renderers point into it
+    SceneOnDevice& operator=(const SceneOnDevice&) = delete;
 
     Device& device() const { return device_; }
     const FlatScene& flat() const { return scene_; }

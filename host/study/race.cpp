@@ -39,10 +39,11 @@ public:
         } catch (const Error& error) {
             if (error.code() != ExitCode::out_of_device_memory) throw;
             const Device& device = on_device.device();
-            throw Error(error.code(), fmt::format("entrant '{}': {}; the entrants before it hold {} of the device's {} "
-                                                  "bytes",
-                                                  run.entrant.name, error.what(), device.allocated_bytes(),
-                                                  device.info().memory_bytes));
+            throw Error(
+                error.code(),
+                fmt::format("entrant '{}': {}; the scene and the entrants before it hold {} of the device's {} "
+                            "bytes",
+                            run.entrant.name, error.what(), device.allocated_bytes(), device.info().memory_bytes));
         }
         run_.curves.emplace_back();
     }

@@ -11,11 +11,11 @@
 #include "core/process.h"
 #include "core/srgb.h"
 #include "flat/flatten.h"
+#include "flat/surface.h"
 #include "render/integrator.h"
-#include "study/moments.h"
 #include "render/path_tracer.h"
 #include "render/render.h"
-#include "flat/surface.h"
+#include "study/moments.h"
 #include "vk/device.h"
 
 namespace vkcppm {

@@ -22,8 +22,8 @@ class Device;
 
 struct ReferenceSettings {
     /// size, camera, lens, seed, max_depth; photons: light paths an iteration of caustics; iterations: of caustics, at
-    /// most, 32..2^31-1, in fours; seconds: wall time after which neither half goes on once it knows its error, without
-    /// it both run to their bounds. The other fields are not looked at.
+    /// most, 32..max_iterations, in fours; seconds: wall time after which neither half goes on once it knows its error,
+    /// without it both run to their bounds. The other fields are not looked at.
     Settings render;
     std::uint32_t samples = 1024;  // paths a pixel, at most; 128..2^24, in sixteens
     double trust = 0.05;           // largest relative standard error of a pixel that is trusted, > 0

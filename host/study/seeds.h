@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/curve.h"
-#include "study/estimate.h"
 #include "core/metrics.h"
+#include "study/estimate.h"
 
 namespace vkcppm {
 

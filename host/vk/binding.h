@@ -38,7 +38,7 @@ constexpr bool rows_are_numbered() {
     }
     return bound_buffers.size() <= TEXELS_BINDING;
 }
-static_assert(rows_are_numbered());
+static_assert(rows_are_numbered(), "BUFFERS of shaders/shared/buffers.h is not in the order of its numbers from 0 on");
 
 constexpr const BoundBuffer& bound_buffer(Binding binding) { return bound_buffers[std::size_t(binding)]; }
 

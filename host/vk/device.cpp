@@ -192,8 +192,10 @@ void run_once(Device& device, const std::string& doing, const std::function<void
         using Access = vk::AccessFlagBits;
         const vk::MemoryBarrier barrier(Access::eTransferWrite, Access::eHostRead | Access::eUniformRead |
                                                                     Access::eShaderRead | Access::eShaderWrite |
-                                                                    Access::eIndirectCommandRead);
-        commands.pipelineBarrier(Stage::eTransfer, Stage::eHost | Stage::eComputeShader | Stage::eDrawIndirect, {},
+                                                                    Access::eIndirectCommandRead |
+                                                                    Access::eTransferRead | Access::eTransferWrite);
+        commands.pipelineBarrier(Stage::eTransfer,
+                                 Stage::eHost | Stage::eComputeShader | Stage::eDrawIndirect | Stage::eTransfer, {},
                                  barrier, {}, {});
         commands.end();
         vk::raii::Fence fence(*impl.device, vk::FenceCreateInfo());

@@ -39,7 +39,8 @@ struct Device::Impl {
 /// `doing` completes the line: "Vulkan failed while <doing>".
 void guarded(const std::string& doing, const std::function<void()>& work);
 
-/// Records commands, submits them and waits for the end. What they transferred is there for the host and for kernels.
+/// Records commands, submits them and waits for the end. What they transferred is there for the host, for
+/// kernels and for further transfers.
 void run_once(Device& device, const std::string& doing, const std::function<void(vk::raii::CommandBuffer&)>& record);
 
 /// Gives a Vulkan object the name by which debuggers, profilers and the validation layer tell it, where

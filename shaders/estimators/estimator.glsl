@@ -27,6 +27,9 @@
 // estimators/kept.glsl clears them by it.
 
 #include "include/pixels.glsl"
+#ifndef ESTIMATOR_GLSL
+#define ESTIMATOR_GLSL
+
 #include "include/split.glsl"
 
 struct Accepted {
@@ -77,3 +80,5 @@ float photon_weight(float q, bool first) {
     if (HAS_SPLIT) return split_weight(q, first);
     return kernel_weight(q);
 }
+
+#endif

@@ -29,7 +29,8 @@
 //                                             weight times the density, 1/sr, with which it gives pair.wi when sampled
 //                                             from pair.wo; 0 of a delta
 //   vec3  name_evaluate(bsdf, surface, pair, part)
-//                                             its part of the BSDF; 0 of a delta
+//                                             its part (PART_*) of the BSDF: rough_lobe weighs one with facets; 0 of a
+//                                             delta, and of PART_FOLLOWED where its width is WIDE
 // Sums go over the rows in this order.
 #define LOBES(ROW)                                        \
     ROW(0u, DIFFUSE, diffuse, true)                       \
@@ -241,7 +242,7 @@ uint choose_lobe(LobeWeights lobes, float u, out float inverse_probability) {
     float share = 0.0;
     float before = 0.0;
 #define CHOOSE(number, NAME, name, present)           \
-    if (lobes.of[number] > 0.0 && at >= before) {     \
+    if (lobes.of[number] > 0.0 && (number == 0u || at >= before)) { \
         chosen = number;                              \
         share = lobes.of[number];                     \
     }                                                 \

@@ -1,6 +1,6 @@
 // Where light from infinity enters the scene: by the box of its bounds or, where that shows less of itself, by their
 // sphere. What misses the scene is wasted: the box about a ball shows twice as much as the ball, the sphere about a
-// plain many times as much as the plain seen at a slant. After sampling.glsl and frame.glsl.
+// plain many times as much as the plain seen at a slant.
 #ifndef ENTRY_GLSL
 #define ENTRY_GLSL
 

@@ -22,6 +22,7 @@
 
 AOVS(UPDATES)
 EYE_PATHS(UPDATES)
+LIGHT_RAYS(UPDATES)
 
 #define FIRST_BOUNCE_DIMENSION 2u  // stratified dimensions 0 and 1 place the ray in the pixel
 #define LOBE_DIMENSIONS 4096u      // of random numbers, beyond those of bounces: where in a lobe
@@ -30,6 +31,7 @@ EYE_PATHS(UPDATES)
 struct EyePath {
     uint pixel;
     EyeState at;           // its next ray, and what it has found
+    LightRay light_ray;    // that it has chosen so far
     HitPosition position;  // where it has ended; HIT_UNFINISHED: it, or its ray to a light, goes on next round
     HitWeight weight;
     uint rays;             // traced by this invocation
@@ -59,7 +61,8 @@ EyePath begin_eye_path(uint pixel) {
     EyePath path;
     path.pixel = pixel;
     path.at = EyeState(vec3(0.0), PATH_OUTSIDE | PATH_STRAIGHT, vec3(0.0), 0.0, vec3(1.0), 0.0, vec3(0.0), 0.0,
-                       HIT_UNFINISHED, no_light_ray());
+                       HIT_UNFINISHED);
+    path.light_ray = no_light_ray();
     path.position = HitPosition(vec3(0.0), HIT_NONE);
     path.weight = HitWeight(vec3(0.0), 0u);
     path.rays = 0u;
@@ -73,6 +76,7 @@ bool load(inout EyePath path) {
     bool unfinished = hit_kind(left) == HIT_UNFINISHED;
     if (unfinished) {
         path.at = eye_paths[path.pixel];
+        if (EYE_PATHS_ASK) path.light_ray = light_rays[path.pixel];
         if (EYE_PATHS_ASK && path.at.end != HIT_UNFINISHED) {
             path.position = HitPosition(left.position, path.at.end);
             path.weight = hit_weight_at(path.pixel);
@@ -89,7 +93,10 @@ void leave_unfinished(inout EyePath path, bool fresh) {
 }
 
 void store(EyePath path) {
-    if (path.position.state == HIT_UNFINISHED) eye_paths[path.pixel] = path.at;
+    if (path.position.state == HIT_UNFINISHED) {
+        eye_paths[path.pixel] = path.at;
+        if (EYE_PATHS_ASK) light_rays[path.pixel] = path.light_ray;
+    }
     hit_position[path.pixel] = path.position;
     hit_weight[path.pixel] = path.weight;
     hit_emission[path.pixel] = HitEmission(path.at.emission, path.at.distance * params.pixel_radius);
@@ -189,18 +196,18 @@ void ask(inout EyePath path, Vertex v) {
         float other = v.rough_share * scatter_density(v.bsdf, v.surface, v.rough, v.wo, light.direction);
         factor *= light.density / (light.density + other);
     }
-    take_one(path.at.light_ray, ray_to(light, path.at.throughput * factor, v.surface), v.u.w);
+    take_one(path.light_ray, ray_to(light, path.at.throughput * factor, v.surface), v.u.w);
 }
 
 // Goes on with the ray to a light; true where it is to go on beyond a surface that is partly there.
 bool light_ray_goes_on(inout EyePath path, uint found, Hit hit) {
-    bool reaches = reaches_light(path.at.light_ray, found, hit);
-    if (reaches) path.at.emission += path.at.light_ray.light;
+    bool reaches = reaches_light(path.light_ray, found, hit);
+    if (reaches) path.at.emission += path.light_ray.light;
     bool passes = HAS_ALPHA && !reaches;
     if (passes) {
-        vec3 direction = path.at.light_ray.direction;
+        vec3 direction = path.light_ray.direction;
         Surface surface = surface_at(hit, direction);
-        pass_surface(path.at.light_ray, surface, hit.t, coverage_of(material_at(hit, direction, surface)));
+        pass_surface(path.light_ray, surface, hit.t, coverage_of(material_at(hit, direction, surface)));
     }
     return passes;
 }

@@ -23,7 +23,7 @@ vec2 cones_of(Light light) { return light.e2.xy; }
 // The share of a textured light's factor that is emitted at a point of it: its texture, where the surface is there.
 vec3 emitted_share(Light light, vec2 b) {
     vec2 barycentric = (1.0 - b.x - b.y) * light.corner[0] + b.x * light.corner[1] + b.y * light.corner[2];
-    SurfaceMaterial material = materials_at(texelFetch(shading_texels, int(light.triangle)).w & ~SHADING_FLAT);
+    SurfaceMaterial material = materials_at(material_of(texelFetch(shading_texels, int(light.triangle)).w));
     vec4 coordinates = HAS_TEXTURES ? texcoords_at(light.triangle, barycentric) : vec4(0.0);
     if (HAS_ALPHA) {
         if (HAS_VERTEX_COLORS) {
@@ -98,7 +98,7 @@ LightSample sample_light(uvec4 bits, vec2 v, vec3 position) {
         float cosine = -dot(s.direction, face_normal(light.e1, light.e2));
         cosine = double_sided ? abs(cosine) : max(0.0, cosine);
         s.triangle = lights_at(index).triangle;
-        SurfaceMaterial material = materials_at(texelFetch(shading_texels, int(s.triangle)).w & ~SHADING_FLAT);
+        SurfaceMaterial material = materials_at(material_of(texelFetch(shading_texels, int(s.triangle)).w));
         float inverse = cosine / (s.distance * s.distance);
         s.radiance = light.power * (inverse / (double_sided ? 2.0 * PI : PI));
         if (HAS_TEXTURED_LIGHTS && light.textured != 0u) s.radiance *= emitted_share(light, b);

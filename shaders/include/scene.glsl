@@ -12,6 +12,10 @@ TEXCOORDS(FLOAT_TEXELS)
 VERTEX_COLORS(TEXELS)
 TANGENTS(TEXELS)
 
+// TriangleShading::material and what else it holds.
+uint material_of(uint word) { return word & ~SHADING_FLAT; }
+bool is_flat(uint word) { return (word & SHADING_FLAT) != 0u; }
+
 // Of the volume of a material, 1 / frame unit.
 vec3 absorption_of(uint index) {
     return materials_at(index).absorption;

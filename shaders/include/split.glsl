@@ -1,6 +1,6 @@
 // The rules of split light (FEATURE_SPLIT, host/study/reference.h): photons bring caustics, and what is lit at less
 // than near_lights from its lamp and seen by way of another surface; paths of the path tracer bring the rest. Elsewhere
-// every rule lets all light through. Pure functions.
+// every rule lets all light through (near_lights is 0 there). Pure functions.
 #ifndef SPLIT_GLSL
 #define SPLIT_GLSL
 

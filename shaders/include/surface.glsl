@@ -38,11 +38,11 @@ Surface surface_at(inout Hit hit, vec3 direction) {
     surface.geometric = face_normal(e1, e2);
     surface.front = dot(surface.geometric, direction) < 0.0;
     surface.error = v0.w;
-    surface.material = corner.w & ~SHADING_FLAT;
+    surface.material = material_of(corner.w);
     float side = surface.front ? 1.0 : -1.0;
     surface.geometric *= side;
     surface.normal = surface.geometric;
-    if ((corner.w & SHADING_FLAT) == 0u) {
+    if (!is_flat(corner.w)) {
         vec3 n = (1.0 - hit.barycentric.x - hit.barycentric.y) * unpack_direction(corner.x) +
                  hit.barycentric.x * unpack_direction(corner.y) + hit.barycentric.y * unpack_direction(corner.z);
         float squared = dot(n, n);
@@ -66,10 +66,10 @@ vec3 leave(Surface surface, vec3 direction) {
 vec4 tangent_at(Hit hit, vec3 front_normal, bool second_uv) {
     if (HAS_TANGENTS) {
         uvec4 corner = texelFetch(tangents_texels, int(hit.triangle));
-        if ((corner.w & 7u) == 7u) {
+        if ((corner.w & TANGENTS_GIVEN) == TANGENTS_GIVEN) {
             vec3 t = (1.0 - hit.barycentric.x - hit.barycentric.y) * unpack_direction(corner.x) +
                      hit.barycentric.x * unpack_direction(corner.y) + hit.barycentric.y * unpack_direction(corner.z);
-            return vec4(t, (corner.w & 8u) != 0u ? -1.0 : 1.0);
+            return vec4(t, (corner.w & TANGENTS_TURNED) != 0u ? -1.0 : 1.0);
         }
     }
     int texel = int(hit.triangle) * 3;

@@ -58,11 +58,11 @@ void follow_path(inout EyePath path) {
 
 // Traces the ray to the light that the path has asked for, if any.
 void follow_light_ray(inout EyePath path) {
-    while (path.at.light_ray.distance > 0.0) {
+    while (path.light_ray.distance > 0.0) {
         --path.steps;
         bool fresh = path.steps + 1 == int(params.step_budget);
         Hit hit;
-        uint found = trace(path.at.light_ray.origin, path.at.light_ray.direction, path.steps, hit);
+        uint found = trace(path.light_ray.origin, path.light_ray.direction, path.steps, hit);
         if (found == TRACE_UNFINISHED) {
             path.at.end = path.position.state;
             leave_unfinished(path, fresh);

@@ -1,7 +1,8 @@
 #version 460
 // One invocation a pixel: sums the photons in its disc with the radius in force before this iteration's photons were
-// looked at, and bins them for the estimator. Reads hits, pixels, grid, sorted photons; writes gathered, tally,
-// cursors. O(photons in the cells that the disc touches). Fails by running out of steps: goes on next round.
+// looked at, and bins them for the estimator. Reads hits, pixels, grid, sorted photons and their
+// flux, in glossy scenes hit_surface and the scene; writes gathered, tally or moments, cursors.
+// O(photons in the cells that the disc touches). Fails by running out of steps: goes on next round.
 // In glossy scenes every photon is weighed by the BSDF for its direction, made from the surface of the hit again.
 // Acceptance: |y - x| < R strictly (appm looks further for its derivative), and the photon's geometric normal agrees
 // with the pixel's shading normal, both on the side they were seen from; the distance is that in space, the kernel is

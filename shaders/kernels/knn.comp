@@ -3,8 +3,8 @@
 // squared radius becomes the squared distance of the k-th nearest accepted photon of this iteration; strict < in the
 // gather then leaves k - 1 inside, which makes (k - 1) / (pi R^2) unbiased. With fewer than k photons within the
 // largest radius it keeps that one and tries again next iteration: the estimate truncated there is unbiased too.
-// Reads searches, hits, grid, sorted photons; writes pixels, tally, nearest, cursors and, of a search that goes on next
-// round, search_states.
+// Reads searches, hits, grid, sorted photons; writes pixels, tally or moments, nearest, cursors and, of a search that
+// goes on next round, search_states.
 // O(photons in the cells met + k per replacement). Fails by running out of steps: goes on next round.
 #include "include/kernel.glsl"
 #include "include/frame.glsl"

@@ -1,7 +1,7 @@
 #version 460
 // One invocation a pixel: adds the iteration's estimate to the film with the radius that gathered it, then lets the
-// estimator decide the next radius. Reads hits, gathered; writes film, pixels, tally and, before the grid is planned
-// anew, the histograms by radius that its plan is made from. O(rings x sectors).
+// estimator decide the next radius. Reads hits, gathered; writes film, pixels, tally or moments and, before the
+// grid is planned anew, the histograms by radius that its plan is made from. O(rings x sectors).
 // Cannot fail: a contribution that is not finite is dropped and counted in status.invalid.
 #include "include/kernel.glsl"
 #include "include/hits.glsl"

@@ -30,7 +30,7 @@
 #define PARAMS(ROW)            ROW(0, params, Params, rest, one, uniform, scratch, never)
 #define STATUS(ROW)            ROW(1, status, Status, rest, one, storage, scratch, never)
 #define GRID(ROW)              ROW(2, grid, Grid, rest, one, storage, carried, apart)
-// Of the scene: members of that name of FlatScene (host/flat/flatten.h), but for the nodes of its BVH.
+// Of the scene: members of that name of FlatScene (host/flat/flat_scene.h), but for the nodes of its BVH.
 #define NODES(ROW)             ROW(3, nodes, BvhNode, node, uploaded, uint_texels, scratch, never)
 #define TRIANGLES(ROW)         ROW(4, triangles, TriangleGeometry, triangle, uploaded, float_texels, scratch, never)
 #define SHADING(ROW)           ROW(5, shading, TriangleShading, triangle, uploaded, uint_texels, scratch, never)
@@ -73,6 +73,7 @@
 #define QUANTILES(ROW)         ROW(39, quantiles, float, rest, uploaded, storage, scratch, never)
 // Of pixels again: searches that are unfinished.
 #define SEARCH_STATES(ROW)     ROW(40, search_states, SearchState, pixel, one, storage, scratch, never)
+#define LIGHT_RAYS(ROW)        ROW(41, light_rays, LightRay, pixel, where_asking, storage, scratch, never)
 
 #define SCENE_BUFFERS(ROW)                                                                               \
     TRIANGLES(ROW) SHADING(ROW) TEXCOORDS(ROW) VERTEX_COLORS(ROW) TANGENTS(ROW) MATERIALS(ROW) TEXTURES(ROW) \
@@ -83,7 +84,7 @@
     SEARCHES(ROW) CURSORS(ROW) NEAREST(ROW) GATHERED(ROW) FILM(ROW) PIXELS(ROW) TALLY(ROW) MOMENTS(ROW)   \
     IMAGE(ROW) TRACES(ROW)                                                                                \
     PATHS(ROW) PHOTONS(ROW) PHOTON_FLUX(ROW) SORTED(ROW) SORTED_FLUX(ROW) PAIRS_A(ROW) PAIRS_B(ROW)       \
-    COUNTERS(ROW) QUANTILES(ROW) SEARCH_STATES(ROW)
+    COUNTERS(ROW) QUANTILES(ROW) SEARCH_STATES(ROW) LIGHT_RAYS(ROW)
 // clang-format on
 
 // PARAMS(BINDING_NUMBER): its binding.

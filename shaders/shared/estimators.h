@@ -1,6 +1,7 @@
 // The family of estimators, a row each: names, help, thresholds and buffers of the host follow from the rows, and so do
 // the modules that CMake compiles: every kernel of modules `each` (shared/kernels.h) once an estimator, with the hooks
-// of shaders/estimators/NAME.glsl (`_` for `-`). Their contract: estimators/estimator.glsl.
+// of shaders/estimators/NAME.glsl (`_` for `-`). Their contract: estimators/estimator.glsl. CMake reads the
+// rows, too: one a line, indented by four.
 //
 // ROW(name, statistic, folded, fitted, summary)
 //   name       as --estimator takes it; the first is the default

@@ -1,6 +1,7 @@
-// Every kernel, a row each, in the order in which an iteration first launches them: shaders/kernels/NAME.comp. What
-// CMake compiles and the program holds, and how the host names, compiles, times and resumes it, follow from the rows.
-// A launch stands in host/render/integrator.cpp (or path_tracer.cpp).
+// Every kernel, shaders/kernels/NAME.comp, a row each, pass by pass, as --stats lists them. What CMake compiles and the
+// program holds, and how the host names, compiles, times and resumes it, follow from the rows; the launches, and their
+// order, stand in host/render/integrator.cpp (and path_tracer.cpp). CMake reads the rows, too: one a line, indented by
+// four.
 //
 // ROW(name, pass, forms, modules, unfinished)
 //   pass        of PASSES: whose it is

@@ -39,13 +39,13 @@ using uint = std::uint32_t;
 // Specialization constants.
 #define SPEC_WORKGROUP 0  // invocations a work group
 #define SPEC_STACK 1      // entries of the traversal stack: the exact need of this scene's BVH
-#define SPEC_RINGS 3      // n_a
-#define SPEC_SECTORS 4    // n_s, even
-#define SPEC_FEATURES 5   // FEATURE_* of this scene
-#define SPEC_DIGIT_BITS 6 // of one radix sort pass
-#define SPEC_NODE_BITS 7  // of the largest index of a node of this scene's BVH
-#define SPEC_LEVELS 8     // of the grid that there is room for
-#define SPEC_WAITS 9      // 1: lanes of the photon pass wait for the longest ray of their SIMD group
+#define SPEC_RINGS 2      // n_a
+#define SPEC_SECTORS 3    // n_s, even
+#define SPEC_FEATURES 4   // FEATURE_* of this scene
+#define SPEC_DIGIT_BITS 5 // of one radix sort pass
+#define SPEC_NODE_BITS 6  // of the largest index of a node of this scene's BVH
+#define SPEC_LEVELS 7     // of the grid that there is room for
+#define SPEC_WAITS 8      // 1: lanes of the photon pass wait for the longest ray of their SIMD group
 
 // Features of a scene or of its settings: a pipeline holds only what its scene needs, and buffers that only a feature
 // reads are empty without it. FEATURE_<NAME> is its bit, HAS_<NAME> (include/kernel.glsl) whether a kernel has it.
@@ -146,6 +146,10 @@ FEATURE_TABLE(FEATURE_BIT_OF_MATERIAL, FEATURE_BIT, FEATURE_BIT)
 
 // Top bit of TriangleShading::material: the three normals are the geometric normal.
 #define SHADING_FLAT 0x80000000u
+
+// Last word of a triangle's tangents, the first three of which are octahedral tangents of its corners.
+#define TANGENTS_GIVEN 7u    // bit c: corner c has one
+#define TANGENTS_TURNED 8u   // << c: the bitangent of corner c points the other way
 
 // 4-wide node, 64 bytes, read as 4 uvec4 texels. Box of child c on axis a:
 // origin[a] + 2^(exponent[a] - 127) * byte c of q[a].
@@ -277,7 +281,8 @@ RECORD(HitSurface)
 
 // The flags of a path in flight, one word: bounces | PATH_* | material of the solid it is in << PATH_MEDIUM_SHIFT.
 #define PATH_BOUNCES 0x7ffu     // up to the largest --max-depth, 1024
-#define PATH_STRAIGHT 0x800u    // it has met nothing but delta lobes since it left the eye or a punctual light
+#define PATH_STRAIGHT 0x800u    // it has met nothing but delta lobes since it left the eye or a punctual light; where
+                                // light is split, a photon also since a surface near its lamp
 #define PATH_DISPERSED 0x1000u  // its wavelength is drawn
 #define PATH_DIRECT 0x2000u     // a photon that has met nothing yet since it left a punctual light or a triangle
 // Where light is split, not of eye paths: a photon since it met another lobe than a delta, but for the surface near its
@@ -312,7 +317,6 @@ struct EyeState {
     vec3 emission;         // throughput * radiance of what it has met so far
     float distance;        // length since the eye
     uint end;              // state of the hit that it has ended in; HIT_UNFINISHED: it goes on
-    LightRay light_ray;    // that it has chosen so far
 };
 
 // Sum of one pass of the gather over a pixel's disc, read as 2 texels.

@@ -2,6 +2,7 @@
 // every estimator; and the hashes of its passes tell where two renders part.
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -121,7 +122,12 @@ TEST_F(CheckpointState, OfAnotherSizeOrWithAnImpossibleGridIsRefused) {
         EXPECT_EQ(error->code(), ExitCode::bad_scene);
         EXPECT_NE(std::string(error->what()).find(std::to_string(size)), std::string::npos) << error->what();
     }
-    // The grid stands last: every cell of a larger one would be looked up past the end of the table.
+    // Every cell of a larger grid would be looked up past the end of the table.
+    std::size_t grid_at = sizeof(gpu::Status) - offsetof(gpu::Status, photons);  // what the status carries comes first
+    for (const BufferRow& row : buffer_rows()) {
+        if (row.binding == Binding::grid) break;
+        if (row.life == Life::carried) grid_at += rig.integrator.buffer(row.binding).bytes();
+    }
     const auto grid = rig.integrator.buffer(Binding::grid).download_value<gpu::Grid>();
     gpu::Grid wide = grid, hashed = grid, empty = grid, flat = grid, deep = grid, shifted = grid;
     wide.dims[0].x *= 1000;
@@ -132,7 +138,7 @@ TEST_F(CheckpointState, OfAnotherSizeOrWithAnImpossibleGridIsRefused) {
     shifted.first[0] = 1;
     for (const gpu::Grid& wrong : {wide, hashed, empty, flat, deep, shifted}) {
         std::vector<std::byte> bad = good;
-        std::memcpy(bad.data() + bad.size() - rig.integrator.buffer(Binding::grid).bytes(), &wrong, sizeof(wrong));
+        std::memcpy(bad.data() + grid_at, &wrong, sizeof(wrong));
         const auto error = thrown_by([&] { rig.integrator.restore(report_of(rig), bad); });
         ASSERT_TRUE(error) << wrong.dims[0].x << " x " << wrong.dims[0].y << " x " << wrong.dims[0].z << ", "
                            << wrong.entries << ", " << wrong.levels << " levels";

@@ -140,7 +140,7 @@ TEST_F(CheckpointFile, EveryWordThatCouldBeALengthMayLie) {
 TEST_F(CheckpointFile, AForeignFileFormatAndStateAreToldApart) {
     EXPECT_NE(refused("").find("is no checkpoint"), std::string::npos);
     EXPECT_NE(refused(std::string(1000, 'x')).find("is no checkpoint"), std::string::npos);
-    EXPECT_NE(refused(with_word(good_, 8, 4)).find("of format 4, this program reads format 3"), std::string::npos);
+    EXPECT_NE(refused(with_word(good_, 8, 5)).find("of format 5, this program reads format 4"), std::string::npos);
     std::string large = good_.substr(0, good_.size() - 8) + std::string(20'000, '\0') + std::string(8, '\0');
     EXPECT_NE(refused(with_word(large, 24, 20'300)).find("20300 bytes, the limit of its picture is"),
               std::string::npos);

@@ -177,8 +177,9 @@ void execute(const RaceOptions& options) {
     Image reference;
     if (!options.make_reference) {
         input.reference_attributes = read_exr_attributes(input.reference);
-        for (Entrant& entrant : wanted.entrants) {
-            if (!entrant.settings.size) entrant.settings.size = read_exr(input.reference).extent;
+        if (!wanted.entrants.front().settings.size) {  // the same for all
+            const Extent size = read_exr(input.reference).extent;
+            for (Entrant& entrant : wanted.entrants) entrant.settings.size = size;
         }
     }
     const RaceSettings race = resolve_race(wanted, scene);
@@ -190,7 +191,6 @@ void execute(const RaceOptions& options) {
     }
     make_folder(options.folder);
     Device device(options.device);
-    require_validation(options.device, device);
     const PipelineCache cache(device, options.device.cache);
     if (options.make_reference) reference = make_race_reference(options, input, race, device);
 

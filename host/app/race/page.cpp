@@ -4,8 +4,8 @@
 #include <string_view>
 #include <utility>
 
-#include "app/record.h"
 #include "app/race/base64.h"
+#include "app/record.h"
 #include "io/png.h"
 
 namespace vkcppm {

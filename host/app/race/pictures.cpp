@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "study/winner.h"
 #include "io/png.h"
+#include "study/winner.h"
 
 namespace vkcppm {
 namespace {

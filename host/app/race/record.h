@@ -8,8 +8,8 @@
 #include "app/options.h"
 #include "app/race/pictures.h"
 #include "io/exr.h"
-#include "study/race.h"
 #include "scene/scene.h"
+#include "study/race.h"
 
 namespace vkcppm {
 

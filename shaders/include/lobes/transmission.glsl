@@ -57,10 +57,10 @@ vec3 transmission_half(Bsdf b, Surface surface, Pair pair) {
     return !b.thin && dot(h, surface.normal) < 0.0 ? -h : h;
 }
 
-float transmission_density(Bsdf b, Surface surface, Pair pair, float weight) {
+// The density at the facet h.
+float transmission_density_at(vec3 h, Bsdf b, Surface surface, Pair pair, float weight) {
     float density = 0.0;
     if (is_rough(b.alpha) && !pair.reflects && pair.wi_n < 0.0) {
-        vec3 h = transmission_half(b, surface, pair);
         float wo_h = dot(pair.wo, h);
         float wi_h = dot(pair.wi, h);
         if (b.thin) {
@@ -72,12 +72,20 @@ float transmission_density(Bsdf b, Surface surface, Pair pair, float weight) {
     return density;
 }
 
+float transmission_density(Bsdf b, Surface surface, Pair pair, float weight) {
+    vec3 h = transmission_half(b, surface, pair);
+    // Summed in another order than there: pictures hang on its last bit.
+    if (b.thin) h = normalize(pair.wo + pair.wi - 2.0 * pair.wi_n * surface.normal);
+    return transmission_density_at(h, b, surface, pair, weight);
+}
+
 vec3 transmission_evaluate(Bsdf b, Surface surface, Pair pair, uint part) {
-    float density = transmission_density(b, surface, pair, 1.0);
+    vec3 h = transmission_half(b, surface, pair);
+    float density = transmission_density_at(h, b, surface, pair, 1.0);
     vec3 value = vec3(0.0);
     if (density != 0.0 && b.glass > 0.0) {
         vec3 tint = b.transmission * below_clearcoat(b, min(1.0, pair.wo_n));
-        float wo_h = min(1.0, dot(pair.wo, transmission_half(b, surface, pair)));
+        float wo_h = min(1.0, dot(pair.wo, h));
         // Radiance changes by the squared ratio of indices across the surface of a solid.
         float lobe = (b.thin ? 1.0 : b.eta * b.eta) * rough_lobe(part, b.alpha, density, pair.wo_n, pair.wi_n);
         value = tint * (facet_transmittance(b, wo_h) * lobe);
