@@ -50,45 +50,59 @@ vec3 transmission_sample(Bsdf b, Surface surface, Facet facet, vec2 u, bool radi
     return weight;
 }
 
-// The normal of the facet that sends one direction of the pair to the other, on the side of wo.
-vec3 transmission_half(Bsdf b, Surface surface, Pair pair) {
-    vec3 mirrored = pair.wi - 2.0 * pair.wi_n * surface.normal;
-    vec3 h = normalize(b.thin ? pair.wo + mirrored : b.eta * pair.wo + pair.wi);
-    return !b.thin && dot(h, surface.normal) < 0.0 ? -h : h;
+// The normal of the facet that sends one direction of the pair through a solid's surface to the other, on the side of
+// wo.
+vec3 refracting_half(Bsdf b, Surface surface, Pair pair) {
+    vec3 h = normalize(b.eta * pair.wo + pair.wi);
+    return dot(h, surface.normal) < 0.0 ? -h : h;
 }
 
-// The density at the facet h.
-float transmission_density_at(vec3 h, Bsdf b, Surface surface, Pair pair, float weight) {
+// The same of a thin wall, whose lobe is that of reflection on the other side.
+vec3 mirroring_half(Surface surface, Pair pair) {
+    vec3 mirrored = pair.wi - 2.0 * pair.wi_n * surface.normal;
+    return normalize(pair.wo + mirrored);
+}
+
+bool transmission_passes(Bsdf b, Pair pair) { return is_rough(b.alpha) && !pair.reflects && pair.wi_n < 0.0; }
+
+// The density at a facet of a solid's surface; 0 where none sends the one direction to the other.
+float refracting_density(vec3 h, Bsdf b, Surface surface, Pair pair) {
+    float wo_h = dot(pair.wo, h);
+    float wi_h = dot(pair.wi, h);
+    if (b.eta == 1.0 || wo_h <= 0.0 || wi_h >= 0.0) return 0.0;
+    return refraction_pdf(b.alpha, surface.normal, pair.wo_n, h, b.eta, wo_h, -wi_h);
+}
+
+float transmission_density(Bsdf b, Surface surface, Pair pair, float weight) {
     float density = 0.0;
-    if (is_rough(b.alpha) && !pair.reflects && pair.wi_n < 0.0) {
-        float wo_h = dot(pair.wo, h);
-        float wi_h = dot(pair.wi, h);
+    if (transmission_passes(b, pair)) {
         if (b.thin) {
-            density = weight * reflection_pdf(b.alpha, surface.normal, pair.wo, h);
-        } else if (b.eta != 1.0 && wo_h > 0.0 && wi_h < 0.0) {
-            density = weight * refraction_pdf(b.alpha, surface.normal, pair.wo_n, h, b.eta, wo_h, -wi_h);
+            density = weight * reflection_pdf(b.alpha, surface.normal, pair.wo, mirroring_half(surface, pair));
+        } else {
+            density = weight * refracting_density(refracting_half(b, surface, pair), b, surface, pair);
         }
     }
     return density;
 }
 
-float transmission_density(Bsdf b, Surface surface, Pair pair, float weight) {
-    vec3 h = transmission_half(b, surface, pair);
-    // Summed in another order than there: pictures hang on its last bit.
-    if (b.thin) h = normalize(pair.wo + pair.wi - 2.0 * pair.wi_n * surface.normal);
-    return transmission_density_at(h, b, surface, pair, weight);
-}
-
 vec3 transmission_evaluate(Bsdf b, Surface surface, Pair pair, uint part) {
-    vec3 h = transmission_half(b, surface, pair);
-    float density = transmission_density_at(h, b, surface, pair, 1.0);
     vec3 value = vec3(0.0);
-    if (density != 0.0 && b.glass > 0.0) {
+    if (transmission_passes(b, pair) && b.glass > 0.0) {
         vec3 tint = b.transmission * below_clearcoat(b, min(1.0, pair.wo_n));
-        float wo_h = min(1.0, dot(pair.wo, h));
-        // Radiance changes by the squared ratio of indices across the surface of a solid.
-        float lobe = (b.thin ? 1.0 : b.eta * b.eta) * rough_lobe(part, b.alpha, density, pair.wo_n, pair.wi_n);
-        value = tint * (facet_transmittance(b, wo_h) * lobe);
+        if (b.thin) {
+            vec3 h = mirroring_half(surface, pair);
+            float density = reflection_pdf(b.alpha, surface.normal, pair.wo, h);
+            float lobe = rough_lobe(part, b.alpha, density, pair.wo_n, pair.wi_n);
+            value = tint * (facet_transmittance(b, min(1.0, dot(pair.wo, h))) * lobe);
+        } else {
+            vec3 h = refracting_half(b, surface, pair);
+            float density = refracting_density(h, b, surface, pair);
+            if (density > 0.0) {
+                // Radiance changes by the squared ratio of indices across the surface.
+                float lobe = b.eta * b.eta * rough_lobe(part, b.alpha, density, pair.wo_n, pair.wi_n);
+                value = tint * (facet_transmittance(b, min(1.0, dot(pair.wo, h))) * lobe);
+            }
+        }
     }
     return value;
 }
