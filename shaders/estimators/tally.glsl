@@ -1,5 +1,6 @@
-// Estimators that count photons a cell of the disc and test the counts. One that includes this has record(), which
-// counts, and test_ratio() of Algorithm 1, which looks at `observed`.
+// Estimators that count photons a cell of the disc and test the counts. One that includes this defines record(), which
+// calls count(), and test_ratio() of Algorithm 1, which looks at `observed` (uniform.glsl has one); begin, flush and
+// update it has from here. One with a rule of its own around algorithm1() defines its update before it includes this.
 #ifndef TALLY_GLSL
 #define TALLY_GLSL
 
@@ -30,8 +31,10 @@ void flush(uint pixel) {
     }
 }
 
+#ifndef HOOK_UPDATE
 #define HOOK_UPDATE
 void update(uint pixel, bool diffuse, uint found, inout PixelState state) { algorithm1(pixel, found, state); }
+#endif
 
 // The pixel's tally, read once for all tests of the disc.
 uint observed[DISC_CELLS];

@@ -17,7 +17,8 @@
 //   life     scratch      made anew by every iteration, or never written by one
 //            carried      an iteration leaves it to the next: checkpoints hold it
 //   hashed   never, eye, gather, update: after that pass; from_knn: after that and those behind it; apart: by rules of
-//            its own in host/render/integrator_state.cpp. In the order of the rows.
+//            its own in host/render/integrator_state.cpp. A hash goes over its buffers in the order of the
+//            rows: a new one changes the hash of its pass
 //
 // Software Vulkan reads a texel of four words for the lanes of a SIMD group (subgroup) at once, and every word of a
 // storage buffer lane by lane. What an invocation has stored it does not read as texels in the same launch.
