@@ -1,7 +1,7 @@
 // How a kernel declares the buffers it uses: PHOTONS(STORES) and the like, after shared/buffers.h, which has the rows.
 //   READS, STORES, UPDATES   name[] as a storage buffer that is read, written, or both
 //   VALUE, UNIFORM           name, the one Element of a storage buffer or uniform block
-//   TEXELS, WORD_TEXELS, FLOAT_TEXELS: name_texels, to be fetched by hand
+//   TEXELS, FLOAT_TEXELS     name_texels, to be fetched by hand
 //   RECORDS, WORD_RECORDS    name_at(index): the Element decoded from texels, by its FIELDS (shared/types.h)
 #ifndef RECORDS_GLSL
 #define RECORDS_GLSL
@@ -18,8 +18,6 @@
     layout(binding = number, scalar) uniform name##_block { Element name; };
 
 #define TEXELS(number, name, Element, per, entries, access, life, hashed) \
-    layout(binding = TEXELS_BINDING + number) uniform usamplerBuffer name##_texels;
-#define WORD_TEXELS(number, name, Element, per, entries, access, life, hashed) \
     layout(binding = TEXELS_BINDING + number) uniform usamplerBuffer name##_texels;
 #define FLOAT_TEXELS(number, name, Element, per, entries, access, life, hashed) \
     layout(binding = TEXELS_BINDING + number) uniform samplerBuffer name##_texels;
