@@ -1,4 +1,4 @@
-"""A glTF 2.0 document with one embedded buffer. Every number is rounded, so that the text does not depend on libm."""
+"""A glTF 2.0 document with one embedded buffer. Every number is rounded, so that the text hardly depends on libm."""
 
 import base64
 import json
