@@ -19,7 +19,7 @@
 // ROW(number, NAME, name, present): of present, in include/lobes/<name>.glsl:
 //   uint  name_gathers(bsdf)                  HIT_NONE, or on which sides photons are gathered on it
 //   float name_width(bsdf)                    alpha of its facets; 0: a delta; WIDE: it has none, and eye paths do not
-//                                             follow it
+//                                             follow it; light paths and the path tracer do
 //   vec3  name_normal(surface)                about which it lies
 //   float name_weight(bsdf, surface, wo)      about what it sends on of light along wo, the largest channel: lobes are
 //                                             chosen in proportion

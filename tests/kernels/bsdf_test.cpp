@@ -30,7 +30,8 @@ constexpr std::uint32_t bsdf_words[] = {
 #include "bsdf.spv.inc"
 };
 
-// LOBE_* of shaders/include/bsdf.glsl.
+// LOBE_* of shaders/include/bsdf.glsl in its order, and LOBE_NONE. Where one is missing here, `none` is a lobe:
+// WeightsAverageToTheAlbedo then finds 0 for every material.
 enum LobeIndex : std::uint32_t { diffuse, reflection, transmission, clearcoat, none };
 
 constexpr std::uint32_t features = FEATURE_REFLECTION | FEATURE_TRANSMISSION | FEATURE_GLOSS | FEATURE_ROUGH |
