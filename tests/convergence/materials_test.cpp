@@ -15,21 +15,17 @@
 namespace vkcppm::test {
 namespace {
 
-Settings settings_of_rooms() {
-    Settings settings;
-    settings.size = Extent{32, 32};
-    settings.iterations = 32;
-    settings.photons = 8192;
-    return settings;
-}
-
 class Materials : public testing::TestWithParam<Case> {};
 
+// Blocks show differences of 7 % of their radiance at best, half of them of 12 %. Discs at edges and corners take 2 %.
 TEST_P(Materials, AgreeWithPathTracing) {
     Scene scene = make_room();
-    Settings settings = settings_of_rooms();
+    Settings settings;
+    settings.size = Extent{32, 32};
+    settings.iterations = 12;
+    settings.photons = 32768;
     GetParam().change(scene, settings);
-    expect_blocks_agree(render_two_ways(scene, settings, 128, 4), {.side = 8, .bias = 0.012});
+    expect_blocks_agree(render_two_ways(scene, settings, 12, 64), {.side = 8, .bias = 0.012});
 }
 
 std::string name_of(const testing::TestParamInfo<Case>& info) { return info.param.name; }
@@ -41,7 +37,9 @@ class SmallLights : public testing::TestWithParam<Case> {};
 
 TEST_P(SmallLights, LeaveNoFireflies) {
     Scene scene = make_room();
-    Settings settings = settings_of_rooms();
+    Settings settings;
+    settings.iterations = 32;
+    settings.photons = 8192;
     GetParam().change(scene, settings);
     settings.size = Extent{96, 96};
     const Image one = valid_picture(scene, settings, settings.iterations);

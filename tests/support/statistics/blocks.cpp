@@ -1,6 +1,7 @@
 #include "support/statistics/blocks.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -32,19 +33,34 @@ std::pair<double, double> moments(const Pictures& pictures, std::uint32_t x0, st
     return {mean, square / (n - 1.0) / n};
 }
 
-/// Welch's test, two-sided, of a difference beyond `allowed`.
+/// Welch's test, two-sided, of a difference beyond `allowed`: v1 is the variance of a mean of n pictures, v2 is known
+/// from so many samples that only v1 is uncertain.
 double p_value(double difference, double allowed, double v1, double v2, double n) {
     const double beyond = std::abs(difference) - allowed;
     if (beyond <= 0.0) return 1.0;
     if (v1 + v2 == 0.0) return 0.0;
-    const double freedom = (v1 + v2) * (v1 + v2) / ((v1 * v1 + v2 * v2) / (n - 1.0));
+    if (v1 == 0.0) return std::erfc(beyond / std::sqrt(2.0 * v2));
+    const double freedom = (n - 1.0) * (1.0 + v2 / v1) * (1.0 + v2 / v1);
     return 2.0 * cdf(complement(boost::math::students_t(freedom), beyond / std::sqrt(v1 + v2)));
 }
 
-Image render_photons(const Scene& scene, const Settings& settings) {
+/// One render's iterations in `parts` of equal length, the mean over each. Photons of a part are its own, and whatever
+/// radius earlier ones have left, its estimate is as good as theirs: parts are uncorrelated.
+Pictures render_photons(const Scene& scene, const Settings& settings, std::uint32_t parts) {
+    assert(settings.iterations % parts == 0);
     Rig run(scene, settings, plain_device());
-    run.integrator.run(settings.iterations);
-    return run.integrator.resolve();
+    Pictures pictures;
+    Image before{*settings.size, std::vector<glm::vec3>(settings.size->pixels(), glm::vec3(0.0f))};
+    for (std::uint32_t part = 0; part < parts; ++part) {
+        run.integrator.run(settings.iterations / parts);
+        Image now = run.integrator.resolve();  // the mean over all parts so far
+        Image& picture = pictures.emplace_back(now);
+        for (std::size_t i = 0; i < now.rgb.size(); ++i) {
+            picture.rgb[i] = float(part + 1) * now.rgb[i] - float(part) * before.rgb[i];
+        }
+        before = std::move(now);
+    }
+    return pictures;
 }
 
 }  // namespace
@@ -53,32 +69,26 @@ oracle::PathTracerSettings oracle_settings(const Settings& settings, std::uint32
     oracle::PathTracerSettings oracle;
     oracle.size = *settings.size;
     oracle.samples = samples;
+    oracle.seed = settings.seed;
     oracle.max_depth = settings.max_depth;
     oracle.aperture = settings.aperture;
     oracle.focus_distance = settings.focus_distance.value_or(1.0);
     return oracle;
 }
 
-TwoWays render_two_ways(const Scene& scene, Settings settings, std::uint32_t samples, std::uint32_t seeds) {
-    oracle::PathTracerSettings oracle = oracle_settings(settings, samples);
-    TwoWays pictures;
-    for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
-        settings.seed = oracle.seed = seed;
-        pictures.photons.push_back(render_photons(scene, settings));
-        pictures.paths.push_back(oracle::path_trace(scene, oracle).mean);
-    }
-    return pictures;
+TwoWays render_two_ways(const Scene& scene, const Settings& settings, std::uint32_t parts, std::uint32_t samples) {
+    return {render_photons(scene, settings, parts), oracle::path_trace(scene, oracle_settings(settings, samples))};
 }
 
-TwoWays render_two_ways_extrapolated(const Scene& scene, Settings settings, std::uint32_t samples,
-                                     std::uint32_t seeds) {
-    TwoWays pictures = render_two_ways(scene, settings, samples, seeds);
+TwoWays render_two_ways_extrapolated(const Scene& scene, Settings settings, std::uint32_t parts,
+                                     std::uint32_t samples) {
+    TwoWays pictures = render_two_ways(scene, settings, parts, samples);
     settings.photons *= 4;
-    for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
-        settings.seed = seeds + seed;
-        const Image fine = render_photons(scene, settings);
-        Image& image = pictures.photons[seed - 1];
-        for (std::size_t i = 0; i < image.rgb.size(); ++i) image.rgb[i] = 2.0f * fine.rgb[i] - image.rgb[i];
+    ++settings.seed;
+    const Pictures fine = render_photons(scene, settings, parts);
+    for (std::uint32_t part = 0; part < parts; ++part) {
+        Image& image = pictures.photons[part];
+        for (std::size_t i = 0; i < image.rgb.size(); ++i) image.rgb[i] = 2.0f * fine[part].rgb[i] - image.rgb[i];
     }
     return pictures;
 }
@@ -87,6 +97,23 @@ namespace {
 
 /// Mean of a channel over a block, and the variance of that mean.
 using BlockMoments = std::function<std::pair<double, double>(std::uint32_t x0, std::uint32_t y0, int channel)>;
+
+/// Those of a picture that knows its standard errors.
+BlockMoments moments_of(const oracle::PathTracing& picture, std::uint32_t side) {
+    return [&picture, side](std::uint32_t x0, std::uint32_t y0, int c) {
+        const double n = double(side) * side;
+        double mean = 0.0, variance = 0.0;
+        for (std::uint32_t y = y0; y < y0 + side; ++y) {
+            for (std::uint32_t x = x0; x < x0 + side; ++x) {
+                const double error = picture.standard_error.at(x, y)[c];
+                mean += picture.mean.at(x, y)[c] / n;
+                variance += error * error / (n * n);
+            }
+        }
+        return std::pair(mean, variance);
+    };
+}
+
 /// The p-value of a difference of means beyond `allowed`, given their variances.
 using BlockTest = std::function<double(double difference, double allowed, double v1, double v2)>;
 
@@ -138,7 +165,7 @@ void expect_agreement(const BlockComparison& blocks, const std::string& ways, co
 
 BlockComparison expect_blocks_agree(const TwoWays& pictures, const BlockSettings& settings) {
     const BlockComparison blocks = compare_blocks(pictures, settings);
-    expect_agreement(blocks, "photons over paths", mean_of(pictures.photons), mean_of(pictures.paths));
+    expect_agreement(blocks, "photons over paths", mean_of(pictures.photons), pictures.paths.mean);
     return blocks;
 }
 
@@ -150,11 +177,11 @@ BlockComparison expect_blocks_agree(const oracle::PathTracing& picture, const or
 }
 
 BlockComparison compare_blocks(const TwoWays& pictures, const BlockSettings& settings) {
-    const auto of = [&](const Pictures& ones) {
-        return [&](std::uint32_t x0, std::uint32_t y0, int c) { return moments(ones, x0, y0, settings.side, c); };
+    const auto of_parts = [&](std::uint32_t x0, std::uint32_t y0, int c) {
+        return moments(pictures.photons, x0, y0, settings.side, c);
     };
-    const double n = double(pictures.paths.size());
-    return compare(pictures.photons.front().extent, settings, of(pictures.photons), of(pictures.paths),
+    const double n = double(pictures.photons.size());
+    return compare(pictures.photons.front().extent, settings, of_parts, moments_of(pictures.paths, settings.side),
                    [n](double difference, double allowed, double v1, double v2) {
                        return p_value(difference, allowed, v1, v2, n);
                    });
@@ -162,21 +189,7 @@ BlockComparison compare_blocks(const TwoWays& pictures, const BlockSettings& set
 
 BlockComparison compare_blocks(const oracle::PathTracing& picture, const oracle::PathTracing& paths,
                                const BlockSettings& settings) {
-    const auto of = [&](const oracle::PathTracing& one) {
-        return [&](std::uint32_t x0, std::uint32_t y0, int c) {
-            const double n = double(settings.side) * settings.side;
-            double mean = 0.0, variance = 0.0;
-            for (std::uint32_t y = y0; y < y0 + settings.side; ++y) {
-                for (std::uint32_t x = x0; x < x0 + settings.side; ++x) {
-                    const double error = one.standard_error.at(x, y)[c];
-                    mean += one.mean.at(x, y)[c] / n;
-                    variance += error * error / (n * n);
-                }
-            }
-            return std::pair(mean, variance);
-        };
-    };
-    return compare(picture.mean.extent, settings, of(picture), of(paths),
+    return compare(picture.mean.extent, settings, moments_of(picture, settings.side), moments_of(paths, settings.side),
                    [](double difference, double allowed, double v1, double v2) {
                        const double beyond = std::abs(difference) - allowed;
                        return beyond <= 0.0 ? 1.0 : std::erfc(beyond / std::sqrt(2.0 * (v1 + v2)));

@@ -13,23 +13,23 @@
 
 namespace vkcppm::test {
 
-/// Several pictures of one kind, of seeds 1, 2...: their spread is the error of their mean.
+/// Several pictures of one kind, uncorrelated: their spread is the error of their mean.
 using Pictures = std::vector<Image>;
 
 /// What the oracle's path tracer is asked for: size, depth and lens of the settings.
 oracle::PathTracerSettings oracle_settings(const Settings& settings, std::uint32_t samples);
 
-/// The scene by the renderer and by the oracle's path tracer, each with seeds 1 to `seeds`, of the size, the depth and
-/// the lens of the settings. The device is the one without the validation layer.
+/// The scene by the renderer and by the oracle's path tracer, of the seed, the size, the depth and the lens of the
+/// settings. The device is the one without the validation layer.
 struct TwoWays {
-    Pictures photons;
-    Pictures paths;
+    Pictures photons;  // parts of one render: its iterations, cut in as many equal parts
+    oracle::PathTracing paths;
 };
-TwoWays render_two_ways(const Scene& scene, Settings settings, std::uint32_t samples, std::uint32_t seeds);
+TwoWays render_two_ways(const Scene& scene, const Settings& settings, std::uint32_t parts, std::uint32_t samples);
 
 /// The same, the photons' pictures extrapolated to a radius of 0: twice a picture with four times the photons, and so
 /// half the radii, less one with those of the settings. The bias at edges is linear in the radius, most of it cancels.
-TwoWays render_two_ways_extrapolated(const Scene& scene, Settings settings, std::uint32_t samples, std::uint32_t seeds);
+TwoWays render_two_ways_extrapolated(const Scene& scene, Settings settings, std::uint32_t parts, std::uint32_t samples);
 
 struct BlockSettings {
     std::uint32_t side = 8;  // pixels of a block either way
