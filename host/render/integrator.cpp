@@ -180,7 +180,7 @@ void Integrator::compile(const std::vector<KernelId>& ids) {
             Specialization specialization = specialization_;
             specialization[SPEC_WORKGROUP] = form.group;
             specialization[SPEC_WAITS] = form.waits;
-            kernel.forms.emplace_back(device_, bindings_, kernel.report.name, words_of(id, estimator_), specialization);
+            kernel.forms.emplace_back(device_, kernel.report.name, words_of(id, estimator_), specialization);
         }
     }
     commands_.begin();

@@ -23,7 +23,7 @@ PathTracer::PathTracer(const SceneOnDevice& scene, const Camera& camera, const S
       bindings_(device_),
       commands_(device_, bindings_),
       buffers_(device_, bindings_),
-      kernel_(device_, bindings_, std::string(row_of(KernelId::path).name), words_of(KernelId::path, {}),
+      kernel_(device_, std::string(row_of(KernelId::path).name), words_of(KernelId::path, {}),
               specialize(scene.flat(), settings, light)),
       size_(*settings.size) {
     scene.lend(buffers_);

@@ -167,6 +167,20 @@ VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT
 
 }  // namespace
 
+std::vector<vk::DescriptorSetLayoutBinding> layout_bindings() {
+    std::vector<vk::DescriptorSetLayoutBinding> bindings;
+    const auto add = [&](std::uint32_t binding, vk::DescriptorType type) {
+        bindings.emplace_back(binding, type, 1, vk::ShaderStageFlagBits::eCompute);
+    };
+    for (const BoundBuffer& row : bound_buffers) {
+        const auto binding = std::uint32_t(row.binding);
+        if (row.access == Access::uniform) add(binding, vk::DescriptorType::eUniformBuffer);
+        if (has_storage(row.access)) add(binding, vk::DescriptorType::eStorageBuffer);
+        if (has_texels(row.access)) add(TEXELS_BINDING + binding, vk::DescriptorType::eUniformTexelBuffer);
+    }
+    return bindings;
+}
+
 void guarded(const std::string& doing, const std::function<void()>& work) {
     try {
         work();
@@ -285,6 +299,11 @@ Device::Device(const Options& options) : impl_(std::make_unique<Impl>()) {
         impl.pool.emplace(*impl.device,
                           vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, family));
         impl.pipelines.emplace(*impl.device, vk::PipelineCacheCreateInfo());
+        const std::vector<vk::DescriptorSetLayoutBinding> bindings = layout_bindings();
+        impl.set_layout.emplace(*impl.device, vk::DescriptorSetLayoutCreateInfo({}, bindings));
+        const vk::DescriptorSetLayout set_layout = **impl.set_layout;
+        const vk::PushConstantRange push(vk::ShaderStageFlagBits::eCompute, 0, sizeof(gpu::Launch));
+        impl.layout.emplace(*impl.device, vk::PipelineLayoutCreateInfo({}, set_layout, push));
     });
 }
 
@@ -330,6 +349,7 @@ bool Device::reuse_pipelines(std::span<const std::byte> data) {
     if (!ours) return false;
     guarded("reading pipelines of an earlier run", [&] {
         impl_->pipelines.emplace(*impl_->device, vk::PipelineCacheCreateInfo({}, data.size(), data.data()));
+        impl_->made.clear();
     });
     return true;
 }

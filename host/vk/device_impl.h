@@ -2,6 +2,8 @@
 // vulkan.hpp and what the other files of host/vk need to know of a Device: included by host/vk alone.
 
 #include <functional>
+#include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -24,6 +26,13 @@ struct Device::Impl {
     std::optional<vk::raii::Queue> queue;
     std::optional<vk::raii::CommandPool> pool;
     std::optional<vk::raii::PipelineCache> pipelines;
+    // All kernels have the same bindings, so that those of the same words and specialization can share a pipeline:
+    // integrators of one scene differ in a few kernels alone.
+    std::optional<vk::raii::DescriptorSetLayout> set_layout;
+    std::optional<vk::raii::PipelineLayout> layout;
+    // By the hash of the words and the specialization.
+    std::map<std::pair<std::uint64_t, std::map<std::uint32_t, std::uint32_t>>, std::shared_ptr<vk::raii::Pipeline>>
+        made;
     vk::PhysicalDeviceLimits limits;
     vk::PhysicalDeviceMemoryProperties memory;
     std::uint32_t subgroup_size = 1;
@@ -34,6 +43,9 @@ struct Device::Impl {
     mutable std::mutex messages_mutex;
     std::vector<std::string> messages;
 };
+
+/// Of the one layout that all kernels have: every buffer's.
+std::vector<vk::DescriptorSetLayoutBinding> layout_bindings();
 
 /// Runs `work` and turns Vulkan's exceptions into Error: lost device, memory, anything else internal.
 /// `doing` completes the line: "Vulkan failed while <doing>".

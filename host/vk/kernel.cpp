@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/fnv1a.h"
 #include "vk/buffer_impl.h"
 #include "vk/device_impl.h"
 
@@ -18,37 +19,22 @@ constexpr std::uint32_t stamps_a_pool = 1024;
 
 struct Bindings::Impl {
     Device* device = nullptr;
-    std::optional<vk::raii::DescriptorSetLayout> set_layout;
-    std::optional<vk::raii::PipelineLayout> layout;
     std::optional<vk::raii::DescriptorPool> pool;
     std::optional<vk::raii::DescriptorSet> set;
 };
 
 Bindings::Bindings(Device& device) : impl_(std::make_unique<Impl>()) {
     guarded("creating the descriptor set", [&] {
-        auto& gpu = *device.impl().device;
+        Device::Impl& impl = device.impl();
         impl_->device = &device;
-        std::vector<vk::DescriptorSetLayoutBinding> bindings;
         std::map<vk::DescriptorType, std::uint32_t> counts;
-        const auto add = [&](std::uint32_t binding, vk::DescriptorType type) {
-            bindings.emplace_back(binding, type, 1, vk::ShaderStageFlagBits::eCompute);
-            ++counts[type];
-        };
-        for (const BoundBuffer& row : bound_buffers) {
-            const auto binding = std::uint32_t(row.binding);
-            if (row.access == Access::uniform) add(binding, vk::DescriptorType::eUniformBuffer);
-            if (has_storage(row.access)) add(binding, vk::DescriptorType::eStorageBuffer);
-            if (has_texels(row.access)) add(TEXELS_BINDING + binding, vk::DescriptorType::eUniformTexelBuffer);
-        }
-        impl_->set_layout.emplace(gpu, vk::DescriptorSetLayoutCreateInfo({}, bindings));
-        const vk::PushConstantRange push(vk::ShaderStageFlagBits::eCompute, 0, sizeof(gpu::Launch));
-        const vk::DescriptorSetLayout set_layout = **impl_->set_layout;
-        impl_->layout.emplace(gpu, vk::PipelineLayoutCreateInfo({}, set_layout, push));
+        for (const vk::DescriptorSetLayoutBinding& binding : layout_bindings()) ++counts[binding.descriptorType];
         std::vector<vk::DescriptorPoolSize> sizes;
         for (const auto& [type, count] : counts) sizes.emplace_back(type, count);
         impl_->pool.emplace(
-            gpu, vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes));
-        vk::raii::DescriptorSets sets(gpu, vk::DescriptorSetAllocateInfo(**impl_->pool, set_layout));
+            *impl.device, vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes));
+        const vk::DescriptorSetLayout set_layout = **impl.set_layout;
+        vk::raii::DescriptorSets sets(*impl.device, vk::DescriptorSetAllocateInfo(**impl_->pool, set_layout));
         impl_->set.emplace(std::move(sets.front()));
     });
 }
@@ -80,30 +66,35 @@ void Bindings::bind(Binding binding, const Buffer& buffer) {
 struct Kernel::Impl {
     std::string name;
     std::uint32_t workgroup = 64;
-    std::optional<vk::raii::Pipeline> pipeline;
+    std::shared_ptr<vk::raii::Pipeline> pipeline;
 };
 
-Kernel::Kernel(Device& device, const Bindings& bindings, std::string name, std::span<const std::uint32_t> spirv,
+Kernel::Kernel(Device& device, std::string name, std::span<const std::uint32_t> spirv,
                const Specialization& specialization)
     : impl_(std::make_unique<Impl>()) {
     impl_->name = std::move(name);
     impl_->workgroup = specialization.at(SPEC_WORKGROUP);
-    guarded(fmt::format("creating kernel '{}'", impl_->name), [&] {
-        auto& gpu = *device.impl().device;
-        const vk::raii::ShaderModule module(gpu, vk::ShaderModuleCreateInfo({}, spirv.size_bytes(), spirv.data()));
-        std::vector<vk::SpecializationMapEntry> entries;
-        std::vector<std::uint32_t> values;
-        for (const auto& [id, value] : specialization) {
-            entries.emplace_back(id, std::uint32_t(values.size() * sizeof(value)), sizeof(value));
-            values.push_back(value);
-        }
-        const vk::SpecializationInfo info(std::uint32_t(entries.size()), entries.data(),
-                                          values.size() * sizeof(values[0]), values.data());
-        const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &info);
-        impl_->pipeline.emplace(gpu, *device.impl().pipelines,
-                                vk::ComputePipelineCreateInfo({}, stage, **bindings.impl().layout));
-        name_object(device.impl(), *impl_->pipeline, impl_->name);
-    });
+    std::shared_ptr<vk::raii::Pipeline>& made = device.impl().made[{fnv1a_of(spirv), specialization}];
+    if (!made) {
+        guarded(fmt::format("creating kernel '{}'", impl_->name), [&] {
+            auto& gpu = *device.impl().device;
+            const vk::raii::ShaderModule module(gpu, vk::ShaderModuleCreateInfo({}, spirv.size_bytes(), spirv.data()));
+            std::vector<vk::SpecializationMapEntry> entries;
+            std::vector<std::uint32_t> values;
+            for (const auto& [id, value] : specialization) {
+                entries.emplace_back(id, std::uint32_t(values.size() * sizeof(value)), sizeof(value));
+                values.push_back(value);
+            }
+            const vk::SpecializationInfo info(std::uint32_t(entries.size()), entries.data(),
+                                              values.size() * sizeof(values[0]), values.data());
+            const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
+                                                          &info);
+            made = std::make_shared<vk::raii::Pipeline>(
+                gpu, *device.impl().pipelines, vk::ComputePipelineCreateInfo({}, stage, **device.impl().layout));
+            name_object(device.impl(), *made, impl_->name);
+        });
+    }
+    impl_->pipeline = made;
 }
 
 Kernel::~Kernel() = default;
@@ -142,7 +133,7 @@ void Commands::begin() {
         impl_->commands->reset();
         impl_->commands->begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
         const vk::DescriptorSet set = **impl_->bindings->impl().set;
-        impl_->commands->bindDescriptorSets(vk::PipelineBindPoint::eCompute, **impl_->bindings->impl().layout, 0, set,
+        impl_->commands->bindDescriptorSets(vk::PipelineBindPoint::eCompute, **impl_->device->impl().layout, 0, set,
                                             {});
         stamp();
     });
@@ -187,7 +178,7 @@ template <typename Dispatch> void Commands::record(const Kernel& kernel, const g
 
     if (takes_labels) commands.beginDebugUtilsLabelEXT(vk::DebugUtilsLabelEXT(kernel.name().c_str()));
     commands.bindPipeline(vk::PipelineBindPoint::eCompute, **kernel.impl().pipeline);
-    commands.pushConstants<gpu::Launch>(**impl_->bindings->impl().layout, vk::ShaderStageFlagBits::eCompute, 0, push);
+    commands.pushConstants<gpu::Launch>(**impl_->device->impl().layout, vk::ShaderStageFlagBits::eCompute, 0, push);
     dispatch(commands);
     const vk::MemoryBarrier barrier(Access::eShaderWrite,
                                     Access::eShaderRead | Access::eShaderWrite | Access::eIndirectCommandRead);

@@ -39,8 +39,9 @@ using Specialization = std::map<std::uint32_t, std::uint32_t>;
 
 class Kernel {
 public:
-    /// `spirv` is a module of shaders/kernels or tests/kernels. `specialization` must hold SPEC_WORKGROUP.
-    Kernel(Device& device, const Bindings& bindings, std::string name, std::span<const std::uint32_t> spirv,
+    /// `spirv` is a module of shaders/kernels or tests/kernels. `specialization` must hold SPEC_WORKGROUP. Compiles it,
+    /// but where the device has compiled the same before.
+    Kernel(Device& device, std::string name, std::span<const std::uint32_t> spirv,
            const Specialization& specialization);
     ~Kernel();
     Kernel(Kernel&&) noexcept;

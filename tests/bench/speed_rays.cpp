@@ -91,8 +91,8 @@ public:
           commands_(device, bindings_),
           buffers_(device, bindings_),
           on_device_(device, flat),
-          trace_(device, bindings_, "trace", trace_words, scene_specialization(flat, 0)),
-          stream_(device, bindings_, "stream", stream_words, scene_specialization(flat, 0)) {
+          trace_(device, "trace", trace_words, scene_specialization(flat, 0)),
+          stream_(device, "stream", stream_words, scene_specialization(flat, 0)) {
         params_ = scene_params(device, flat, scene.cameras.at(0), settings, false);
         on_device_.lend(buffers_);
         buffers_.upload(Binding::params, std::vector{params_});

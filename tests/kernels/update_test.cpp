@@ -320,7 +320,7 @@ TEST_F(FilmSum, ManyAdditionsDoNotStagnate) {
         for (const float value : values) records.push_back({glm::vec3(value, 2.0f * value, 0.7f * value), 0.0f});
         emission.upload(records);
     };
-    const Kernel kernel(plain_device(), bindings, "update", words_of(KernelId::update, "sppm"),
+    const Kernel kernel(plain_device(), "update", words_of(KernelId::update, "sppm"),
                         {{SPEC_WORKGROUP, 64}, {SPEC_RINGS, 2}, {SPEC_SECTORS, 6}});
     Commands commands(plain_device(), bindings);
     const auto run = [&](std::uint64_t launches) {

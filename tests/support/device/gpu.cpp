@@ -26,7 +26,7 @@ Probe::Probe(std::string name, std::span<const std::uint32_t> spirv, std::uint32
              std::uint32_t node_bits)
     : bindings_(device()),
       commands_(device(), bindings_),
-      kernel_(device(), bindings_, std::move(name), spirv,
+      kernel_(device(), std::move(name), spirv,
               {{SPEC_WORKGROUP, 64}, {SPEC_STACK, stack}, {SPEC_FEATURES, features}, {SPEC_NODE_BITS, node_bits}}) {
     create(Binding::params, sizeof(gpu::Params));
     create(Binding::status, sizeof(gpu::Status));
