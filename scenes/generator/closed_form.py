@@ -44,7 +44,7 @@ def point_plane():
     expected = Expectation(
         "L = rho/pi I cos(theta) / r^2, theta and r at the plane's point from the light at (-0.8, 2.5, 0.5), "
         "I = (10, 20, 45) W/sr, rho = (0.8, 0.6, 0.4), plane y = 0",
-        camera, radiance, iterations=192, photons=262144)
+        camera, radiance, iterations=192, photons=131072)
     quadrants(expected, camera)
     return document, expected
 
@@ -96,7 +96,7 @@ def directional_plane():
     expected = Expectation(
         "L = rho/pi E cos(theta), E = (2, 3, 4) W/m^2 across the light that travels along (0.6, -0.7, -0.4), "
         "rho = (0.9, 0.5, 0.2), plane y = 0",
-        camera, radiance, iterations=160, photons=262144)
+        camera, radiance, iterations=160, photons=131072)
     quadrants(expected, camera)
     return document, expected
 
@@ -231,7 +231,7 @@ def _slab_floor(about, attenuation, formula):
     expected = Expectation(
         formula + ", F the exact Fresnel reflectance at 60 degrees, ior 1.5, E = (4, 5, 6) W/m^2 across the light, "
         "rho = (0.8, 0.6, 0.4), floor y = 0",
-        camera, radiance, iterations=192, photons=262144)
+        camera, radiance, iterations=192, photons=65536)
     expected.add_region("floor", (0, 64), (0, 64))
     return document, expected
 

@@ -18,7 +18,7 @@ struct Expected {
 };
 
 // Tolerance of a fitted slope: neighbouring discs share photons, so that the mean squared error of the picture has a
-// standard error of about 8 %, over a factor of 64 in iterations.
+// standard error of about 8 %, over a factor of 64 in iterations: slopes of several seeds differ by 0.02.
 constexpr double slope_tolerance = 0.1;
 
 class Slope : public GpuTest, public testing::WithParamInterface<Expected> {};
@@ -41,7 +41,7 @@ TEST_P(Slope, OfTheMeanSquaredErrorOverIterations) {
     Settings settings;
     settings.estimator = GetParam().estimator;
     settings.size = Extent{48, 48};
-    settings.photons = 65536;
+    settings.photons = 16384;
     Rig run(scene, settings, plain_device());
     // rho/pi E cos(theta), the green channel of scenes/directional_plane.expect.json.
     const double truth = 0.3325667;
