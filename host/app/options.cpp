@@ -69,6 +69,11 @@ std::vector<std::pair<std::string, std::string>> choices_of(setting::AnEstimator
     for (const EstimatorRow& row : estimators()) choices.emplace_back(row.name, row.summary);
     return choices;
 }
+template <std::size_t N> std::vector<std::pair<std::string, std::string>> choices_of(const setting::Words<N>& words) {
+    std::vector<std::pair<std::string, std::string>> choices;
+    for (const setting::Word& word : words.values) choices.emplace_back(word.name, word.summary);
+    return choices;
+}
 
 /// The row's help with its default and choices.
 std::string help_of(const auto& row) {

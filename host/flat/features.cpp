@@ -132,11 +132,15 @@ std::string gathering_rule() {
            "followed,\n"
            "with its own density p, and gathered on, as by k photons (--knn) of density cos/pi, weighed by the "
            "balance\n"
-           "heuristic: of its light p / (p + k cos/pi) is found by following and the rest by photons. Where a rough "
-           "lobe\n"
-           "may be followed a point of a light is asked for too, weighed against meeting it by the same heuristic. "
-           "What\n"
-           "of a punctual light comes by way of mirrors or smooth glass is brought by photons alone.";
+           "heuristic: of its light p / (p + k cos/pi) is found by following and the rest by photons. Light that "
+           "comes\n"
+           "straight from its source is asked for on every surface that is not perfectly smooth: a point of a light "
+           "at a\n"
+           "time, weighed against meeting it by the same heuristic; photons bring it next to lamps alone, or "
+           "everywhere\n"
+           "with --direct gathered. What of a punctual light comes by way of mirrors or smooth glass is brought by "
+           "photons\n"
+           "alone.";
 }
 
 }  // namespace vkcppm

@@ -43,6 +43,13 @@ void check(const std::string& option, const Extent& size, setting::Pixels limit)
     }
 }
 void check(const std::string&, const std::string& name, setting::AnEstimator) { find_estimator(name); }
+template <std::size_t N>
+void check(const std::string& option, const std::string& word, const setting::Words<N>& words) {
+    std::vector<std::string> names;
+    for (const setting::Word& known : words.values) names.push_back(known.name);
+    if (std::ranges::find(names, word) == names.end())
+        throw Error(ExitCode::usage, fmt::format("{} '{}' is none of {}", option, word, fmt::join(names, ", ")));
+}
 
 /// Index of the camera that `wanted` names: by name, else by index; empty is the first.
 std::size_t find_camera(const std::string& wanted, const Scene& scene) {
@@ -110,6 +117,8 @@ std::vector<Feature> features_of(const Settings& settings) {
     if (settings.aperture > 0.0)
         features.push_back(make_feature(FEATURE_LENS, fmt::format("--aperture {:g}", settings.aperture)));
     if (settings.caustics) features.push_back(make_feature(FEATURE_SPLIT, "a reference"));
+    if (!settings.caustics && settings.direct == direct_sampled)
+        features.push_back(make_feature(FEATURE_DIRECT, fmt::format("--direct {}", direct_sampled)));
     return features;
 }
 

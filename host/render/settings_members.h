@@ -13,6 +13,10 @@ namespace vkcppm {
 /// Beyond, the counter of random numbers starts again and iterations repeat.
 inline constexpr std::uint32_t max_iterations = (1u << 30) - 1;
 
+/// Values of Settings::direct.
+inline constexpr const char* direct_sampled = "sampled";
+inline constexpr const char* direct_gathered = "gathered";
+
 struct Settings {
 #define SETTING(member, type, standard, name, kind, values, unit, help) type member = standard;
 #include "render/settings_table.h"

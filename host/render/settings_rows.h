@@ -46,6 +46,11 @@ struct Pixels {  // 1..side wide and high, at most `pixels` in all
     std::size_t pixels;
 };
 struct AnEstimator {};  // a name of render/estimators.h
+struct Word {
+    const char* name;
+    const char* summary;  // one line for --help
+};
+template <std::size_t N> struct Words { std::array<Word, N> values; };
 
 constexpr Any any() { return {}; }
 template <typename T> constexpr Within<T> within(T low, T high) { return {low, high}; }
@@ -55,6 +60,7 @@ template <typename T, typename... More> constexpr OneOf<T, 1 + sizeof...(More)> 
 }
 constexpr Pixels pixels(std::uint32_t side, std::size_t pixels) { return {side, pixels}; }
 constexpr AnEstimator an_estimator() { return {}; }
+template <typename... More> constexpr Words<sizeof...(More)> words(More... words) { return {{words...}}; }
 
 inline constexpr double longest = 1e9;  // m, of a lens; one over it is the shortest
 

@@ -49,6 +49,11 @@ SETTING(seed, std::uint32_t, 1, "seed", picture, any(), count,
 SETTING(max_depth, std::uint32_t, 64, "max-depth", picture, within(1u, 1024u), count,
         "Bounces of a path (default: {})")
 
+SETTING(direct, std::string, direct_sampled, "direct", parameter,
+        words(Word{direct_sampled, "eye paths ask for it, a point of a light at every surface (next-event estimation)"},
+              Word{direct_gathered, "photons bring it as all other light"}),
+        name, "Light that comes straight from its source:{choices}\n(default: {})")
+
 SETTING(knn, std::uint32_t, 10, "knn", parameter, within(2u, 256u), count,
         "The starting radius reaches this many photons (default: {})")
 

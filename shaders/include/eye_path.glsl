@@ -1,13 +1,14 @@
 // An eye path and what it does: it meets surfaces and light, asks for a light (next-event estimation), chooses a lobe
 // and follows it (BSDF sampling) or gathers photons there. What it meets and what it asks for are weighed by the
-// balance heuristic (multiple importance sampling). Reads the scene; writes the records of the hit, AOVs, and the state
-// of a path that has run out of steps.
+// balance heuristic (multiple importance sampling), direct light by the rules of include/direct.glsl. Reads the scene;
+// writes the records of the hit, AOVs, and the state of a path that has run out of steps.
 #ifndef EYE_PATH_GLSL
 #define EYE_PATH_GLSL
 
 #include "include/kernel.glsl"
 #include "include/bsdf.glsl"
 #include "include/camera.glsl"
+#include "include/direct.glsl"
 #include "include/environment.glsl"
 #include "include/frame.glsl"
 #include "include/hits.glsl"
@@ -27,6 +28,8 @@ LIGHT_RAYS(UPDATES)
 #define FIRST_BOUNCE_DIMENSION 2u  // stratified dimensions 0 and 1 place the ray in the pixel
 #define LOBE_DIMENSIONS 4096u      // of random numbers, beyond those of bounces: where in a lobe
 #define LIGHT_DIMENSIONS 8192u     // which light is asked for, and where on it
+#define CANDIDATE_DIMENSIONS 1024u //   of one candidate, beyond that: where in a pixel of the environment, and whether
+                                   //   it is taken
 
 struct EyePath {
     uint pixel;
@@ -45,6 +48,7 @@ struct Vertex {
     SurfaceMaterial material;
     Bsdf bsdf;
     vec3 wo;            // towards the eye
+    vec3 throughput;    // of the path, before a lobe is chosen
     uint depth;         // bounces before it
     vec4 u;             // where in a lobe, and whether the surface is there
     LobeWeights lobes;  // to choose from: gathering has the place of the diffuse lobe
@@ -61,7 +65,7 @@ EyePath begin_eye_path(uint pixel) {
     EyePath path;
     path.pixel = pixel;
     path.at = EyeState(vec3(0.0), PATH_OUTSIDE | PATH_STRAIGHT, vec3(0.0), 0.0, vec3(1.0), 0.0, vec3(0.0), 0.0,
-                       HIT_UNFINISHED);
+                       HIT_UNFINISHED, vec3(1.0));
     path.light_ray = no_light_ray();
     path.position = HitPosition(vec3(0.0), HIT_NONE);
     path.weight = HitWeight(vec3(0.0), 0u);
@@ -108,16 +112,31 @@ void store(EyePath path) {
 // density with which rough lobes gave the ray its direction; 0: none did, and nothing else finds this light.
 float met_weight(float followed, float density) { return followed > 0.0 ? followed / (followed + density) : 1.0; }
 
+// The throughput for light that the ray meets and that could be asked for with `density`. asks: it is asked for, where
+// direct light is.
+vec3 throughput_of_met(EyePath path, float density, bool asks) {
+    if (!EYE_PATHS_ASK) return path.at.throughput;
+    if (!HAS_DIRECT) return path.at.throughput * met_weight(path.at.followed, density);
+    if (!HAS_ROUGH || !asks) return path.at.throughput;
+    return path.at.direct * met_weight(path.at.followed, density);
+}
+
+// What lies between the path's last vertex and the next lets through so much.
+void attenuate(inout EyePath path, vec3 transmittance) {
+    path.at.throughput *= transmittance;
+    if (HAS_DIRECT && HAS_ROUGH) path.at.direct *= transmittance;
+}
+
 void meet_nothing(inout EyePath path) {
     if (!finite(path.at.direction)) {
         // A ray that goes nowhere meets nothing: the update pass is to hear of it.
         path.at.emission += path.at.direction;
     } else if (HAS_ENVIRONMENT && sees_light(path.at.flags)) {
         vec3 met = environment_radiance(path.at.direction);
-        if (EYE_PATHS_ASK && met != vec3(0.0)) {
-            met *= met_weight(path.at.followed, environment_density(path.at.direction));
+        if (met != vec3(0.0)) {
+            float density = EYE_PATHS_ASK ? environment_density(path.at.direction) : 0.0;
+            path.at.emission += throughput_of_met(path, density, true) * met;
         }
-        path.at.emission += path.at.throughput * met;
     }
 }
 
@@ -130,7 +149,7 @@ Vertex meet(inout EyePath path, Hit hit) {
     v.surface = surface_at(hit, path.at.direction);
     v.hit = hit;
     v.material = material_at(hit, path.at.direction, v.surface);
-    if (HAS_VOLUME) path.at.throughput *= transmittance(path.at.flags, v.surface, hit.t);
+    if (HAS_VOLUME) attenuate(path, transmittance(path.at.flags, v.surface, hit.t));
     v.u = vec4(0.0);
     if (HAS_ROUGH || HAS_ALPHA) {
         v.u = random4(params.seed, launch.iteration, STREAM_EYE, path.pixel, LOBE_DIMENSIONS + v.depth);
@@ -165,38 +184,62 @@ void meet_unlit(inout EyePath path, Vertex v) {
 void meet_emission(inout EyePath path, Vertex v) {
     if ((v.surface.front || has(v.material, SURFACE_DOUBLE_SIDED)) && sees_light(path.at.flags)) {
         vec3 met = v.material.emission;
-        if (EYE_PATHS_ASK && met != vec3(0.0)) {
-            met *= met_weight(path.at.followed, met_density(v.material, v.surface, path.at.direction, path.at.leg));
+        if (met != vec3(0.0)) {
+            float density = EYE_PATHS_ASK ? met_density(v.material, v.surface, path.at.direction, path.at.leg) : 0.0;
+            path.at.emission += throughput_of_met(path, density, asks_emitter(density)) * met;
         }
-        path.at.emission += path.at.throughput * met;
     }
 }
 
 // How the surface scatters, and what the path has to choose from there.
 void weigh_lobes(inout EyePath path, inout Vertex v) {
     float ior = index_for_path(v.material, STREAM_EYE, path.pixel, path.at.flags, path.at.throughput);
+    v.throughput = path.at.throughput;
     v.bsdf = bsdf_of(v.material, ior, v.surface.front);
     v.lobes = lobes_of(v.bsdf, v.surface, v.wo);
     v.rough = share_with_photons(v.bsdf, v.lobes);
     v.rough_share = total(v.rough) / total(v.lobes);
-    v.asks = EYE_PATHS_ASK && params.light_count > 0u && v.rough_share > 0.0;
+    // Where photons are gathered there is direct light too.
+    bool asks = v.rough_share > 0.0 || (HAS_DIRECT && v.lobes.of[LOBE_DIFFUSE] > 0.0);
+    v.asks = EYE_PATHS_ASK && params.light_count > 0u && asks;
 }
 
 // ---- ask ----
 
-// Asks for a light: one point of one. Of all that a path asks for one is kept in proportion to what it brings.
-void ask(inout EyePath path, Vertex v) {
-    uvec4 bits = random_words(params.seed, launch.iteration, STREAM_EYE, path.pixel, LIGHT_DIMENSIONS + v.depth);
-    LightSample light = sample_light(bits, v.u.xy, v.surface.position);
-    vec3 factor = light.radiance * rough_bsdf(v.bsdf, v.surface, v.wo, light.direction, PART_FOLLOWED);
+// What a sample of the light that arrives at the vertex brings, where nothing is in between.
+vec3 light_from(EyePath path, Vertex v, LightSample light) {
+    if (HAS_DIRECT && light.triangle != NO_TRIANGLE && !asks_emitter(light.density)) return vec3(0.0);
+    uint part = HAS_DIRECT ? PART_ALL : PART_FOLLOWED;
+    vec3 factor = light.radiance * rough_bsdf(v.bsdf, v.surface, v.wo, light.direction, part);
     factor *= abs(dot(light.direction, v.surface.normal)) * transmittance_to(light, path.at.flags, v.bsdf, v.surface);
     // What a path of full length would meet next it does not meet. (Rays to lights pass any number of surfaces that are
     // partly there, of which each costs a path a bounce: where it has too few left that share is lost.)
-    if (light.density > 0.0 && bounces_of(path.at.flags) < params.max_depth) {
+    if (HAS_ROUGH && light.density > 0.0 && v.rough_share > 0.0 && bounces_of(path.at.flags) < params.max_depth) {
         float other = v.rough_share * scatter_density(v.bsdf, v.surface, v.rough, v.wo, light.direction);
         factor *= light.density / (light.density + other);
     }
-    take_one(path.light_ray, ray_to(light, path.at.throughput * factor, v.surface), v.u.w);
+    return v.throughput * factor;
+}
+
+// Asks for a light: one point of one, of several where direct light is asked for (resampled importance sampling;
+// Talbot, Cline and Egbert 2005). Of all that a path asks for one is kept in proportion to what it brings.
+void ask(inout EyePath path, Vertex v) {
+    uint dimension = LIGHT_DIMENSIONS + v.depth;
+    uvec4 bits = random_words(params.seed, HAS_DIRECT ? 0u : launch.iteration, STREAM_EYE, path.pixel, dimension);
+    if (!HAS_DIRECT) {
+        LightSample light = sample_light(bits, v.u.xy, v.surface.position);
+        take_one(path.light_ray, ray_to(light, light_from(path, v, light), v.surface), v.u.w);
+        return;
+    }
+    for (uint i = 0u; i < params.light_candidates; ++i) {
+        dimension += CANDIDATE_DIMENSIONS;
+        vec4 u = random4(params.seed, launch.iteration, STREAM_EYE, path.pixel, dimension);
+        uvec2 pair = sobol_pair(launch.iteration * params.light_candidates + i, bits.xy);
+        LightSample light = sample_light(pair, u.xy, v.surface.position);
+        vec3 brings = light_from(path, v, light) / float(params.light_candidates);
+        if (!finite(brings)) path.at.emission += brings;  // the update pass is to hear of it
+        take_one(path.light_ray, ray_to(light, brings, v.surface), u.w);
+    }
 }
 
 // Goes on with the ray to a light; true where it is to go on beyond a surface that is partly there.
@@ -242,6 +285,7 @@ bool follow(inout EyePath path, Vertex v, uint lobe) {
     float density;
     path.at.throughput *= sample_lobe(lobe, v.bsdf, v.surface, v.u.xy, true, path.at.direction, density);
     if (HAS_ROUGH) {
+        path.at.direct = path.at.throughput;
         path.at.throughput *= followed_weight(density, dot(path.at.direction, normal_of(lobe, v.surface)));
         path.at.flags = leave_lobe(path.at.flags, density);
         // A clearcoat's light from below the horizon of its base is not asked for: rough_bsdf leaves it out.
@@ -249,6 +293,12 @@ bool follow(inout EyePath path, Vertex v, uint lobe) {
         bool met_alone = !v.asks || density == DELTA || side <= 0.0;
         path.at.followed = met_alone ? 0.0 : v.rough_share * scatter_density(v.bsdf, v.surface, v.rough, v.wo,
                                                                               path.at.direction);
+        // Direct light from there counts by all lobes, whichever gave the direction.
+        if (HAS_DIRECT && path.at.followed > 0.0) {
+            float cosine = abs(dot(path.at.direction, v.surface.normal));
+            path.at.direct = v.throughput * (cosine / path.at.followed) *
+                             rough_bsdf(v.bsdf, v.surface, v.wo, path.at.direction, PART_ALL);
+        }
         path.at.leg = 0.0;
     }
     bool goes_on = !all(lessThanEqual(path.at.throughput, vec3(0.0)));

@@ -4,6 +4,7 @@
 #define LIGHT_GLSL
 
 #include "include/kernel.glsl"
+#include "include/direct.glsl"
 #include "include/entry.glsl"
 #include "include/environment.glsl"
 #include "include/frame.glsl"
@@ -50,10 +51,33 @@ Light choose_light(uvec4 bits, out uint index) {
     return light;
 }
 
+// The same by one word, of which the light keeps what it has not used: equidistributed words stay so.
+Light choose_light(inout uint word, out uint index) {
+    uint low;
+    umulExtended(word, params.light_count, index, low);
+    Light light = lights_at(index);
+    float share = float(low >> 8u) * 5.9604644775390625e-8;
+    bool keeps = share < light.keep;
+    share = keeps ? share / light.keep : (share - light.keep) / (1.0 - light.keep);
+    word = uint(min(share, 0.99999994) * 4294967296.0);
+    if (!keeps) {
+        index = light.alias_entry;
+        light = lights_at(index);
+    }
+    return light;
+}
+
 // About the density, per area, in which points of an emitter are drawn: exact but for what textures vary. emission:
 // without textures.
 float emitter_density(vec3 emission, bool double_sided) {
-    return (emission.r + emission.g + emission.b) * (PI / 3.0) * (double_sided ? 2.0 : 1.0) / params.light_power;
+    // Not the sum of the channels, which may be beyond floats.
+    return dot(emission / params.light_power, vec3(double_sided ? 2.0 * PI / 3.0 : PI / 3.0));
+}
+
+// The same of a triangle that emits.
+float density_of(uint triangle, bool double_sided) {
+    SurfaceMaterial material = materials_at(material_of(texelFetch(shading_texels, int(triangle)).w));
+    return emitter_density(material.emission, double_sided);
 }
 
 // The same per solid angle, 1/sr, for a ray that meets the emitter `distance` away.
@@ -81,16 +105,13 @@ struct LightSample {
     uint triangle;    // that the light is a part of; NO_TRIANGLE: none
 };
 
-// bits: four random words; v: two numbers in [0, 1). Lights in proportion to their power, then a point in proportion to
-// what is emitted there.
-LightSample sample_light(uvec4 bits, vec2 v, vec3 position) {
-    vec4 u = unit_floats(bits);
-    uint index;
-    Light light = choose_light(bits, index);
+// Of one light: a point in proportion to what is emitted there. bits: two random words; v: two numbers in [0, 1).
+LightSample sample_one_light(Light light, uint index, uvec2 bits, vec2 v, vec3 position) {
+    vec2 u = unit_floats(bits.xyxy).xy;
     vec3 towards = light.position - position;
     LightSample s = LightSample(vec3(0.0), FAR, vec3(0.0), 0.0, NO_TRIANGLE);
     if (HAS_AREA_LIGHTS && light.kind == LIGHT_TRIANGLE) {
-        vec2 b = sample_triangle(u.zw);
+        vec2 b = sample_triangle(u);
         towards += b.x * light.e1 + b.y * light.e2;
         s.distance = length(towards);
         s.direction = towards / s.distance;
@@ -98,11 +119,10 @@ LightSample sample_light(uvec4 bits, vec2 v, vec3 position) {
         float cosine = -dot(s.direction, face_normal(light.e1, light.e2));
         cosine = double_sided ? abs(cosine) : max(0.0, cosine);
         s.triangle = lights_at(index).triangle;
-        SurfaceMaterial material = materials_at(material_of(texelFetch(shading_texels, int(s.triangle)).w));
         float inverse = cosine / (s.distance * s.distance);
         s.radiance = light.power * (inverse / (double_sided ? 2.0 * PI : PI));
         if (HAS_TEXTURED_LIGHTS && light.textured != 0u) s.radiance *= emitted_share(light, b);
-        if (cosine > 0.0) s.density = emitter_density(material.emission, double_sided) / inverse;
+        if (cosine > 0.0) s.density = density_of(s.triangle, double_sided) / inverse;
     }
     if ((HAS_POINT_LIGHTS || HAS_SPOT_LIGHTS) &&
         (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT)) {
@@ -122,27 +142,46 @@ LightSample sample_light(uvec4 bits, vec2 v, vec3 position) {
         s.radiance = light.power / entry_area(axis_of(light));
     }
     if (HAS_ENVIRONMENT && light.kind == LIGHT_ENVIRONMENT) {
-        s.radiance = light.power * sample_environment(bits.z, u.w, v, s.direction);
+        s.radiance = light.power * sample_environment(bits.x, u.y, v, s.direction);
         s.density = environment_density(s.direction);
     }
     return s;
 }
 
+// Of all: lights in proportion to their power. bits: four random words.
+LightSample sample_light(uvec4 bits, vec2 v, vec3 position) {
+    uint index;
+    Light light = choose_light(bits, index);
+    return sample_one_light(light, index, bits.zw, v, position);
+}
+
+// The same by two words that are equidistributed.
+LightSample sample_light(uvec2 pair, vec2 v, vec3 position) {
+    uint index;
+    Light light = choose_light(pair.x, index);
+    return sample_one_light(light, index, pair, v, position);
+}
+
 // The start of a light path: lights in proportion to their power, then position and direction in proportion to what the
 // light emits there, so that every path carries the same power at its start (but for what a texture varies within a
 // triangle, and entry_area within a pixel of the environment). bits: four random words; v: four numbers in [0, 1).
-// Returns the kind of the light.
-uint emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 power) {
+// near: length from the light within which photons bring what is left to them of what it sends (include/direct.glsl,
+// include/split.glsl); 0 of lights of no area. Returns the kind of the light.
+uint emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 power, out float near) {
     vec4 u = unit_floats(bits);
     uint index;
     Light light = choose_light(bits, index);
     power = light.power;
+    near = 0.0;
     // One kind after the other, each only where the scene has it.
     if (HAS_AREA_LIGHTS && light.kind == LIGHT_TRIANGLE) {
         vec2 b = sample_triangle(u.zw);
         vec3 n = face_normal(light.e1, light.e2);
         if (light.double_sided != 0u && v.w < 0.5) n = -n;
-        direction = normalize(from_frame(n, sample_cosine(v.xy)));
+        vec3 local = sample_cosine(v.xy);
+        direction = normalize(from_frame(n, local));
+        if (HAS_SPLIT) near = params.near_lights;
+        if (HAS_DIRECT) near = near_emitter(density_of(lights_at(index).triangle, light.double_sided != 0u), local.z);
         // Off the emitter by its rounding error, as `leave` does; its error travels in e-vectors' scale.
         vec3 extent = abs(light.position) + abs(light.e1) + abs(light.e2);
         float error = 4.8e-7 * max(extent.x, max(extent.y, extent.z));

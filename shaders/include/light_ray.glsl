@@ -11,6 +11,8 @@
 #include "include/surface.glsl"
 #include "include/traverse.glsl"
 
+const float POSITION_ERROR = 1e-6;  // frame units, as the smallest radius
+
 LightRay no_light_ray() { return LightRay(vec3(0.0), 0.0, vec3(0.0), NO_TRIANGLE, vec3(0.0)); }
 
 // What the solid that the ray goes through lets pass. flags: of the path that asks, at the surface.
@@ -18,13 +20,16 @@ vec3 transmittance_to(LightSample light, uint flags, Bsdf bsdf, Surface surface)
     if (!HAS_VOLUME) return vec3(1.0);
     bool through = dot(light.direction, surface.geometric) < 0.0;
     uint medium = pass_boundary(flags, bsdf, through ? LOBE_TRANSMISSION : LOBE_NONE, surface) >> PATH_MEDIUM_SHIFT;
-    return medium == PATH_NO_MEDIUM ? vec3(1.0) : exp(-light.distance * absorption_of(medium));
+    // To a light that is infinitely far away nothing gets through what absorbs.
+    return medium == PATH_NO_MEDIUM ? vec3(1.0) : exp(-min(light.distance * absorption_of(medium), vec3(100.0)));
 }
 
 // From the surface to the light. contribution: what it adds to the picture where nothing is in between.
 LightRay ray_to(LightSample light, vec3 contribution, Surface surface) {
-    float distance = any(greaterThan(contribution, vec3(0.0))) ? light.distance : 0.0;
-    return LightRay(leave(surface, light.direction), distance, light.direction, light.triangle, contribution);
+    vec3 origin = leave(surface, light.direction);
+    float distance = light.distance - dot(origin - surface.position, light.direction);
+    if (!any(greaterThan(contribution, vec3(0.0)))) distance = 0.0;
+    return LightRay(origin, distance, light.direction, light.triangle, contribution);
 }
 
 // One of two rays in proportion to what they add, for the sum of both; u in [0, 1).
@@ -36,9 +41,10 @@ void take_one(inout LightRay ray, LightRay other, float u) {
     if (a + b > 0.0) ray.light *= (a + b) / (takes ? b : a);
 }
 
-// True where the trace of the ray has found nothing in between.
+// True where the trace of the ray has found nothing in between, but for what is as near to the light as positions are
+// known: of a lamp that is no larger the ray may meet another triangle than it was aimed at.
 bool reaches_light(LightRay ray, uint found, Hit hit) {
-    return found == TRACE_MISS || hit.triangle == ray.triangle || hit.t >= ray.distance;
+    return found == TRACE_MISS || hit.triangle == ray.triangle || hit.t >= ray.distance - POSITION_ERROR;
 }
 
 // The ray has met a surface of which the share `coverage` is there.

@@ -57,4 +57,29 @@ float stratified(uint seed, uint iteration, uint pixel, uint dimension) {
     return float((shift + iteration * RECURRENCE[dimension]) >> 8u) * 5.9604644775390625e-8;
 }
 
+// A hash of the bits of a number in [0, 1), of which each depends on those above it alone: Owen's scrambling (1995)
+// with the hash of Laine and Karras (2011) in the form of Vegdahl (2021). Equidistribution in dyadic intervals is kept.
+uint owen_scrambled(uint x, uint seed) {
+    uint v = bitfieldReverse(x);
+    v ^= v * 0x3d20adeau;
+    v += seed;
+    v *= (seed >> 16u) | 1u;
+    v ^= v * 0x05526c56u;
+    v ^= v * 0x53a22864u;
+    return bitfieldReverse(v);
+}
+
+// Pair i of the (0,2)-sequence of Sobol' (1967), as 32-bit fractions, scrambled: of the first 2^m, and of every 2^m
+// that follow, one lies in each dyadic box of area 2^-m. The second generator matrix is Pascal's triangle modulo 2,
+// which is a Kronecker power and so takes five steps.
+uvec2 sobol_pair(uint i, uvec2 seeds) {
+    uint x = i;
+    x ^= (x >> 1u) & 0x55555555u;
+    x ^= (x >> 2u) & 0x33333333u;
+    x ^= (x >> 4u) & 0x0f0f0f0fu;
+    x ^= (x >> 8u) & 0x00ff00ffu;
+    x ^= (x >> 16u) & 0x0000ffffu;
+    return uvec2(owen_scrambled(bitfieldReverse(i), seeds.x), owen_scrambled(bitfieldReverse(x), seeds.y));
+}
+
 #endif

@@ -73,6 +73,14 @@ void follow_light_ray(inout EyePath path) {
     }
 }
 
+// True where the pixel has no starting radius, and looks for it in this iteration: where there are too few photons
+// about that may never end, so it looks in those iterations whose number, of those that it gathered in, is a power of
+// two.
+bool searches_now(uint pixel) {
+    PixelState state = pixels_at(pixel);
+    return state.seeded == 0u && (state.seen & (state.seen - 1u)) == 0u;
+}
+
 void main() {
     uint pixel = invocation_pixel();
     if (pixel >= pixel_count() || blocked(PASS_EYE)) return;
@@ -88,7 +96,7 @@ void main() {
     if (EYE_PATHS_ASK && path.position.state != HIT_UNFINISHED) follow_light_ray(path);
     store(path);
     // The knn pass, which has little to do after the first iterations, goes through these alone.
-    if (gathers(path.position) && pixels_at(pixel).seeded == 0u) {
+    if (gathers(path.position) && searches_now(pixel)) {
         uint place = atomicAdd(status.searches, 1u);
         if (place < pixel_count()) searches[place] = pixel;
     }

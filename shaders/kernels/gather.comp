@@ -133,6 +133,13 @@ void weigh_queue(Receiver r, uint queued, inout Gathered sum, inout int steps) {
     }
 }
 
+// Photons in a disc at the density of those in the cells about it: what the plan of the grid is to reckon with, at
+// least, for the disc itself may be empty where light falls beside it.
+uint per_disc(uint tested, float radius2, GridLevel level) {
+    float across = 2.0 * sqrt(radius2) + 1.0 / level.inverse_cell;
+    return uint(ceil(float(tested) * PI * radius2 / (across * across)));
+}
+
 void main() {
     uint pixel = invocation_pixel();
     if (pixel >= pixel_count() || blocked(PASS_GATHER)) return;
@@ -158,7 +165,9 @@ void main() {
     while (!walked(cursor, box) && steps > 0) {
         uint queued = 0u;
         FOR_SEGMENTS(box, cursor, walk, steps, queued < QUEUE, {
+            uint tested = walk.first;
             uvec2 run = mark_accepted(r, box.level, walk, steps);
+            sum.tested += walk.first - tested;
             // A store by all lanes: a branch for each would guess wrong.
             queue[queued] = run;
             queued += uint(run.y != 0u);
@@ -166,11 +175,12 @@ void main() {
         weigh_queue(r, queued, sum, steps);
     }
     flush(pixel);
-    gathered[pixel] = sum;
     if (walked(cursor, box)) {
         cursor.cell.x = CURSOR_DONE;
+        sum.tested = max(sum.count, per_disc(sum.tested, r.radius2, box.level));
     } else {
         block_after(PASS_GATHER);
     }
+    gathered[pixel] = sum;
     cursors[pixel] = cursor;
 }

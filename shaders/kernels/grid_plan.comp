@@ -1,7 +1,7 @@
 #version 460
 // One invocation: chooses the levels of the grid from the radii in force. The cost it minimises is that of the gather,
-// in loop trips: segments of rows visited, and photons in the cells visited at the density that discs of that radius
-// have found; of the tables, and of what a level more costs to build. Reads the histograms of radii and of photons in
+// in loop trips: segments of rows visited, and photons in the cells visited at the density about discs of that radius;
+// of the tables, and of what a level more costs to build. Reads the histograms of radii and of photons in
 // discs; writes grid and clears the histograms. O(levels^2 x bins^2): at most 20,000 loop trips for radii over 10^6 and
 // 50,000 if every bin were in use, of the 65,535 that software Vulkan runs. Fails where there is no room for so many
 // levels: begins again when there is.

@@ -40,12 +40,11 @@ float shading_correction(Surface surface, vec3 before, vec3 after) {
 void begin_light_path(inout PathState state) {
     uint kind = emit(random_words(params.seed, launch.iteration, STREAM_PHOTON, state.path, 0u),
                      random4(params.seed, launch.iteration, STREAM_PHOTON, state.path, 1u),
-                     state.origin, state.direction, state.power);
+                     state.origin, state.direction, state.power, state.near);
     // Of no area, so that no eye path meets it.
     bool punctual = kind == LIGHT_POINT || kind == LIGHT_SPOT || kind == LIGHT_DIRECTIONAL;
-    state.flags = PATH_OUTSIDE;
+    state.flags = PATH_OUTSIDE | PATH_DIRECT;
     if (punctual) state.flags |= PATH_STRAIGHT;
-    if (kind != LIGHT_ENVIRONMENT) state.flags |= PATH_DIRECT;
     state.origin = enter_bounds(state.origin, state.direction);
     state.power0 = largest(state.power);
 }
@@ -66,7 +65,7 @@ void store_photon(inout PathState state, uint slot, Surface surface) {
 }
 
 // Scatters the path by one lobe; false where it ends. u: where in the lobe, and in .x or .w which.
-bool scatter(inout PathState state, Bsdf bsdf, Surface surface, float t, vec4 u) {
+bool scatter(inout PathState state, Bsdf bsdf, Surface surface, vec4 u) {
     // In scenes without gloss no surface needs two numbers for its direction and a third for its lobe.
     float inverse_probability;
     LobeWeights lobes = lobes_of(bsdf, surface, -state.direction);
@@ -76,7 +75,7 @@ bool scatter(inout PathState state, Bsdf bsdf, Surface surface, float t, vec4 u)
     float density;
     vec3 weight = sample_lobe(lobe, bsdf, surface, u.xy, false, state.direction, density);
     state.power *= weight * inverse_probability;
-    bool lit_near = (state.flags & (PATH_STRAIGHT | PATH_DIRECT)) == PATH_DIRECT && t < params.near_lights;
+    bool lit_near = (state.flags & PATH_DIRECT) != 0u && state.near > 0.0;
     state.flags &= ~PATH_DIRECT;
     if (density != DELTA) state.flags &= ~PATH_STRAIGHT;
     state.flags = split_photon(state.flags, density, lit_near);
@@ -106,7 +105,10 @@ bool meet(inout PathState state, uint slot, Hit hit) {
     if (HAS_UNLIT && has(material, SURFACE_UNLIT)) bsdf = black();
     // What is black reflects no photon to any eye. Where a surface is partly there the photon counts in full: it tells
     // how much light arrives, and the eye path has asked for the surface.
-    if (brings_light(state.flags) && gathers_light(bsdf)) store_photon(state, slot, surface);
+    state.near -= hit.t;
+    bool brings = brings_light(state.flags);
+    if (HAS_DIRECT) brings = (state.flags & PATH_DIRECT) == 0u || state.near > 0.0;
+    if (brings && gathers_light(bsdf)) store_photon(state, slot, surface);
     bool there = true;
     if (HAS_ALPHA) {
         float coverage = coverage_of(material);
@@ -114,7 +116,7 @@ bool meet(inout PathState state, uint slot, Hit hit) {
         u.w /= coverage;  // uniform again where the surface is there
     }
     bool alive = true;
-    if (there) alive = scatter(state, bsdf, surface, hit.t, u);
+    if (there) alive = scatter(state, bsdf, surface, u);
     alive = alive && bounces < params.max_depth && largest(state.power) > 0.0;
     if (alive) alive = survives(state, u.z);
     state.origin = leave(surface, state.direction);
@@ -152,7 +154,7 @@ void main() {
 
     PathState state;
     if (launch.round == 0u) {
-        state = PathState(vec3(0.0), NO_PATH, vec3(0.0), PATH_OUTSIDE, vec3(0.0), 0u, 0.0, 0u, first);
+        state = PathState(vec3(0.0), NO_PATH, vec3(0.0), PATH_OUTSIDE, vec3(0.0), 0u, 0.0, 0u, first, 0.0);
     } else {
         state = paths[lane];
     }

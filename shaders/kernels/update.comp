@@ -43,8 +43,8 @@ void main() {
         if (launch.plans_next == 1u && diffuse) {
             int bin = radius_bin(state.radius2);
             atomicAdd(status.radius_histogram[bin], 1u);
-            uint before = atomicAdd(status.photon_histogram[bin], sum.count);
-            if (before + sum.count < before) atomicAdd(status.photon_histogram_high[bin], 1u);
+            uint before = atomicAdd(status.photon_histogram[bin], sum.tested);
+            if (before + sum.tested < before) atomicAdd(status.photon_histogram_high[bin], 1u);
         }
     }
 }

@@ -81,15 +81,19 @@ using uint = std::uint32_t;
     SCENE(23, ENVIRONMENT, environment)                                                                        \
     /* light is split in two: photons bring caustics and what is lit at less than near_lights from its lamp, as  \
        fixtures are, paths the rest: include/split.glsl, host/study/reference.h */                             \
-    SETTING(24, SPLIT, caustics alone)
+    SETTING(24, SPLIT, caustics alone)                                                                         \
+    /* eye paths ask for direct light, photons bring the rest: include/direct.glsl */                          \
+    SETTING(25, DIRECT, direct light asked for)
 // clang-format on
 #define FEATURE_BIT(bit, NAME, words) VKCPPM_CONST uint FEATURE_##NAME = 1u << bit;
 #define FEATURE_BIT_OF_MATERIAL(bit, NAME, words, trait) FEATURE_BIT(bit, NAME, words)
 FEATURE_TABLE(FEATURE_BIT_OF_MATERIAL, FEATURE_BIT, FEATURE_BIT)
 
-// Eye paths ask for lights where they may follow a rough lobe. Where light is split photons bring caustics alone, and
-// of those an eye path finds what it meets by delta lobes after it has followed a rough one.
-#define ASKS_FOR_LIGHTS(features) (((features) & (FEATURE_ROUGH | FEATURE_SPLIT)) == FEATURE_ROUGH)
+// Eye paths ask for lights where direct light is theirs, and where they may follow a rough lobe. Where light is split
+// photons bring caustics alone, and of those an eye path finds what it meets by delta lobes after it has followed a
+// rough one. One comparison, as glslc has no && of specialization constants: SPLIT, never with DIRECT, is above ROUGH.
+#define ASKS_FOR_LIGHTS(features) \
+    (((features) & (FEATURE_ROUGH | FEATURE_DIRECT)) > ((features) & FEATURE_SPLIT))
 // Those that ask for parts of a SurfaceMaterial.
 #define FEATURES_OF_SCATTERING (FEATURE_REFLECTION | FEATURE_TRANSMISSION)
 #define FEATURES_OF_COATS (FEATURE_COAT | FEATURE_ALPHA)
@@ -284,7 +288,7 @@ RECORD(HitSurface)
 #define PATH_STRAIGHT 0x800u    // it has met nothing but delta lobes since it left the eye or a punctual light; where
                                 // light is split, a photon also since a surface near its lamp
 #define PATH_DISPERSED 0x1000u  // its wavelength is drawn
-#define PATH_DIRECT 0x2000u     // a photon that has met nothing yet since it left a punctual light or a triangle
+#define PATH_DIRECT 0x2000u     // a photon that has met nothing yet since it left its light
 // Where light is split, not of eye paths: a photon since it met another lobe than a delta, but for the surface near its
 // lamp; a path of the path tracer whose last lobe was no delta, and one before it neither.
 #define PATH_SCATTERED 0x4000u
@@ -317,6 +321,7 @@ struct EyeState {
     vec3 emission;         // throughput * radiance of what it has met so far
     float distance;        // length since the eye
     uint end;              // state of the hit that it has ended in; HIT_UNFINISHED: it goes on
+    vec3 direct;           // what the throughput is for direct light that the next ray meets: include/direct.glsl
 };
 
 // Sum of one pass of the gather over a pixel's disc, read as 2 texels.
@@ -324,7 +329,8 @@ struct EyeState {
     FIELD(vec3, flux)    /* sum of photon power * correction, without the hit's weight */ \
     FIELD(uint, count)   /* accepted photons */ \
     FIELD(vec3, excess)  /* what rounding has left too much in flux (Kahan 1965) */ \
-    FIELD(uint, unused)
+    /* photons in the cells that were walked; at the end those in a disc of their density, or more in this one */ \
+    FIELD(uint, tested)
 RECORD(Gathered)
 
 // A search for the k nearest photons of a pixel at the end of a round.
@@ -381,6 +387,7 @@ struct PathState {
     float power0;      // largest channel of the power at emission, for Russian roulette
     uint begin;        // stored before this path
     uint next;         // path that the SIMD group takes next
+    float near;        // length from its light within which photons bring direct light, less what it has gone
 };
 #define NO_PATH 0xffffffffu
 
@@ -440,7 +447,7 @@ struct Status {
     // From here on what the next plan of the grid is made from, and so what a checkpoint holds.
     uint photons;      // stored in the last iteration
     uint radius_histogram[RADIUS_BINS];     // pixels that gather
-    uint photon_histogram[RADIUS_BINS];     // photons in their discs, low word
+    uint photon_histogram[RADIUS_BINS];     // photons in discs like theirs (Gathered::tested), low word
     uint photon_histogram_high[RADIUS_BINS];
 };
 
@@ -465,6 +472,7 @@ struct Params {
     uint light_count;
     float near_lights;     // frame units; 0 where light is not split
     float light_power;     // of all lights, mean channel, W (frame-scaled): what the alias table is in proportion to
+    uint light_candidates; // of which an eye path asks for one, where it asks for direct light
     uvec2 environment;     // its columns and rows
     float lens_radius;     // frame units; at focus_distance along the axis a point is sharp
     float focus_distance;

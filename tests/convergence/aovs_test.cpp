@@ -17,6 +17,7 @@ TEST_F(Aovs, OfALitPlane) {
     settings.size = Extent{32, 32};
     settings.photons = 16384;
     settings.aovs = true;
+    settings.direct = direct_gathered;  // photons at the first surface
     constexpr std::uint32_t iterations = 32;
     Rig rig(project_scene("point_plane"), settings);
     rig.integrator.run(iterations);

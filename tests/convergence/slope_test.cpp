@@ -41,6 +41,7 @@ TEST_P(Slope, OfTheMeanSquaredErrorOverIterations) {
     Settings settings;
     settings.estimator = GetParam().estimator;
     settings.size = Extent{48, 48};
+    settings.direct = direct_gathered;  // of photons alone
     settings.photons = 16384;
     Rig run(scene, settings, plain_device());
     // rho/pi E cos(theta), the green channel of scenes/directional_plane.expect.json.

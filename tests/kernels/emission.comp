@@ -19,7 +19,8 @@ void main() {
     uint i = invocation();
     if (i >= launch.items) return;
     EmitOutput start;
-    start.kind = emit(inputs[i].bits, inputs[i].v, start.origin, start.direction, start.power);
+    float near;
+    start.kind = emit(inputs[i].bits, inputs[i].v, start.origin, start.direction, start.power, near);
     start.radiance = vec3(0.0);
     if (HAS_ENVIRONMENT) start.radiance = environment_radiance(-start.direction);
     outputs[i] = start;

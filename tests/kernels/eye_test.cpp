@@ -127,6 +127,7 @@ TEST_F(Eye, PathsEndWhereTheOracleEndsThem) {
     Settings settings;
     settings.size = Extent{96, 64};
     settings.photons = 64;
+    settings.direct = direct_gathered;  // emission is then what the path meets, and nothing that it asks for
     Scene scene = room();
     add_sphere(scene, {0.55, 0.45, 0.8}, 0.15, 1, add_material(scene, lambert({0.2f, 0.4f, 0.8f})),
                false);  // inside the glass

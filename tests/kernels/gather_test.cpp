@@ -33,6 +33,7 @@ Settings settings_of(const std::string& estimator, std::uint32_t photons) {
     settings.estimator = estimator;
     settings.size = Extent{64, 64};
     settings.photons = photons;
+    settings.direct = direct_gathered;  // many photons of few paths
     return settings;
 }
 

@@ -22,12 +22,13 @@
 #define MEMBERS_HIT_WEIGHT X(weight) X(normal)
 #define MEMBERS_HIT_EMISSION X(emission) X(footprint)
 #define MEMBERS_HIT_SURFACE X(triangle) X(barycentric) X(outgoing)
-#define MEMBERS_GATHERED X(flux) X(count) X(excess) X(unused)
+#define MEMBERS_GATHERED X(flux) X(count) X(excess) X(tested)
 #define MEMBERS_PIXEL_STATE X(radius2) X(seeded) X(count) X(total) X(batch) X(rejections) \
     X(photons) X(seen) X(statistic) X(radius2_low) X(count_low) X(unused)
 #define MEMBERS_AOVS X(albedo) X(normal) X(depth) X(hits) X(albedo_low) X(normal_low) X(depth_low)
 #define MEMBERS_FILM X(sum) X(low)
-#define MEMBERS_PATH_STATE X(origin) X(path) X(direction) X(flags) X(power) X(stored) X(power0) X(begin) X(next)
+#define MEMBERS_PATH_STATE X(origin) X(path) X(direction) X(flags) X(power) X(stored) X(power0) X(begin) X(next) \
+    X(near)
 #define MEMBERS_TRACE_STATE X(origin) X(flags) X(direction) X(density) X(throughput) X(distance) X(radiance) X(done) \
     X(sum) X(ended) X(light_ray)
 #define MEMBERS_CURSOR X(cell) X(photon)
@@ -38,12 +39,12 @@
 #define MEMBERS_PARAMS \
     X(eye) X(width) X(right) X(height) X(up) X(seed) X(forward) X(pixel_radius) X(bounds_low) X(photons) \
     X(bounds_high) X(photons_per_lane) X(photon_lanes) X(photon_capacity) X(bounds_radius) X(max_depth) \
-    X(light_count) X(near_lights) X(light_power) X(environment) \
+    X(light_count) X(near_lights) X(light_power) X(light_candidates) X(environment) \
     X(lens_radius) X(focus_distance) X(start) X(step_budget) X(knn) X(radius_cap) X(radius_floor) X(footprint_cap) \
     X(inverse_paths) X(flux_unit) X(alpha) X(k) X(beta) \
     X(cells) X(grid_levels) X(most_levels) X(sort_lanes) X(scan_blocks) X(threshold) X(sector_edge) X(sector_centre)
 #define MEMBERS_EYE_STATE X(origin) X(flags) X(direction) X(followed) X(throughput) X(leg) X(emission) X(distance) \
-    X(end)
+    X(end) X(direct)
 #define MEMBERS_SEARCH_STATE X(largest) X(largest_index) X(radius) X(kept)
 #define MEMBERS_LAUNCH X(iteration) X(round) X(last_round) X(paths) X(search_group) X(level) X(scan_first) \
     X(scan_count) X(digit_shift) X(reads_b) X(plans_next) X(argument) X(items)

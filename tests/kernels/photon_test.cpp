@@ -42,6 +42,7 @@ Settings with_photons(std::uint32_t photons, std::uint32_t max_depth, std::uint3
     Settings settings;
     settings.size = Extent{16, 16};
     settings.photons = photons;
+    settings.direct = direct_gathered;  // else photons begin at the second surface: see direct_test.cpp
     settings.max_depth = max_depth;
     settings.seed = seed;
     return settings;

@@ -61,7 +61,8 @@ std::size_t expect_sound_picture(const Scene& scene) {
         gathering += gathers[i] ? 1 : 0;
         lit += gathers[i] && rgb != glm::vec3(0.0f) ? 1 : 0;
     }
-    EXPECT_GE(4 * lit, 3 * gathering) << "only " << lit << " of " << gathering << " pixels that gather are not black";
+    // The rest are in the shadow of the only light.
+    EXPECT_GE(2 * lit, gathering) << "only " << lit << " of " << gathering << " pixels that gather are not black";
     return gathering;
 }
 

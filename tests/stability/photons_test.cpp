@@ -20,6 +20,7 @@ protected:
         Settings settings;
         settings.size = size;
         settings.photons = photons;
+        settings.direct = direct_gathered;
         return settings;
     }
 

@@ -39,6 +39,9 @@ std::array<Extent, 2> two_of(const Extent&, setting::Pixels) { return {{{8, 4}, 
 std::array<std::string, 2> two_of(const std::string&, setting::AnEstimator) {
     return {std::string(estimators()[0].name), std::string(estimators()[1].name)};
 }
+template <std::size_t N> std::array<std::string, 2> two_of(const std::string&, const setting::Words<N>& words) {
+    return {words.values[0].name, words.values[1].name};
+}
 std::array<std::string, 2> two_of(const std::string&, setting::Any) { return {"0", "1"}; }
 std::array<std::uint32_t, 2> two_of(std::uint32_t, setting::Any) { return {1, 2}; }
 std::array<double, 2> two_of(double, setting::Any) { return {0.25, 0.5}; }
