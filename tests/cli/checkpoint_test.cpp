@@ -256,6 +256,7 @@ TEST_F(Checkpoint, OfAnotherRenderIsRefusedWithWhatDiffers) {
 }
 
 TEST_F(Checkpoint, AFullDiskKeepsTheOldOneAndThePicture) {
+    if (test::limit_stops_the_driver(64)) GTEST_SKIP() << test::memory_in_files;
     expect_done(render({"--iterations", "2", "-o", "a.exr", "--checkpoint", "a.ckpt"}));
     const std::string before = bytes("a.ckpt");
     // 32 KiB hold the picture, but no checkpoint.
@@ -280,17 +281,24 @@ TEST_F(Checkpoint, AFullDiskKeepsTheOldOneAndThePicture) {
 // Threads of lavapipe and its SIMD width are the driver's matter, whose kernels are compiled anew for each width.
 TEST_F(Checkpoint, HashesAreTheSameForAllThreadsAndWidths) {
     std::string expected;
-    for (const char* variable :
-         {"LP_NUM_THREADS=1", "LP_NUM_THREADS=2", "LP_NUM_THREADS=3", "LP_NATIVE_VECTOR_WIDTH=128"}) {
-        Words all = words({"--iterations", "3", "-o", "a.exr", "--hash"});
-        all.insert(all.begin(), {"/usr/bin/env", variable, test::program()});
+    // Vectors of 128 bits without the optimiser, which dies of them in LLVM 19 (Mesa 25.0.7).
+    const std::vector<Words> environments = {{"LP_NUM_THREADS=1"},
+                                             {"LP_NUM_THREADS=2"},
+                                             {"LP_NUM_THREADS=3"},
+                                             {"LP_NATIVE_VECTOR_WIDTH=128", "GALLIVM_PERF=nopt"}};
+    for (const Words& environment : environments) {
+        Words all = {"/usr/bin/env"};
+        all.insert(all.end(), environment.begin(), environment.end());
+        all.push_back(test::program());
+        const Words more = words({"--iterations", "3", "-o", "a.exr", "--hash"});
+        all.insert(all.end(), more.begin(), more.end());
         const ProcessResult result = run_process(all, folder_.path());
         expect_done(result);
         const std::vector<std::string> lines = lines_of(result.out);
         ASSERT_EQ(lines.size(), 19u) << result.out;
         EXPECT_TRUE(lines[0].starts_with("1 eye ") && lines[17].starts_with("3 update ")) << result.out;
         if (expected.empty()) expected = result.out;
-        EXPECT_EQ(result.out, expected) << "under " << variable;
+        EXPECT_EQ(result.out, expected) << "under " << environment.back();
     }
 }
 

@@ -2,6 +2,7 @@
 // The built program under test: its runs, and what is expected of them.
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <sstream>
 #include <string>
@@ -39,6 +40,18 @@ protected:
 
     TemporaryFolder folder_;
 };
+
+inline constexpr const char* memory_in_files =
+    "the driver keeps device memory in files, which such a limit is for, too";
+
+/// True where a limit on the size of files, in blocks of 512 bytes, stops the driver: lavapipe of Mesa 25 keeps device
+/// memory in a file without a name. Tried with a picture that is smaller than the limit.
+inline bool limit_stops_the_driver(int blocks) {
+    const TemporaryFolder folder;
+    const std::string script = "ulimit -f " + std::to_string(blocks) +
+                               "; exec \"$0\" \"$1\" --size 4x4 --iterations 1 --photons 16 --quiet -o small.exr";
+    return run_process({"/bin/sh", "-c", script, program(), scene("slab_floor")}, folder.path()).signal == SIGBUS;
+}
 
 inline void expect_done(const ProcessResult& result) {
     EXPECT_FALSE(result.timed_out);
