@@ -1,7 +1,6 @@
 // Every scene of scenes/ with an <name>.expect.json reaches the value that its formula gives.
 
 #include <filesystem>
-#include <fstream>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -12,6 +11,7 @@
 #include "support/device/gpu.h"
 #include "support/files/evidence.h"
 #include "support/files/places.h"
+#include "support/scenes/expectation.h"
 
 namespace vkcppm::test {
 namespace {
@@ -32,8 +32,7 @@ std::vector<std::string> expectations() {
 class ClosedForm : public GpuTest, public testing::WithParamInterface<std::string> {};
 
 TEST_P(ClosedForm, MeanRadianceOfEveryRegion) {
-    std::ifstream file(scenes / (GetParam() + ".expect.json"));
-    const nlohmann::json expected = nlohmann::json::parse(file);
+    const nlohmann::json expected = expectation_of(GetParam());
     const Scene scene = load_gltf(scenes / expected["scene"].get<std::string>());
     EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.front();
     Settings settings;
@@ -48,13 +47,12 @@ TEST_P(ClosedForm, MeanRadianceOfEveryRegion) {
     for (const auto& region : expected["regions"]) {
         glm::dvec3 sum(0.0);
         std::size_t count = 0;
-        for (std::uint32_t y = region["y"][0]; y < region["y"][1]; ++y) {
-            for (std::uint32_t x = region["x"][0]; x < region["x"][1]; ++x, ++count) {
-                sum += glm::dvec3(rendering.image.at(x, y));
-                wanted.rgb[std::size_t(y) * wanted.extent.width + x] = {region["rgb"][0], region["rgb"][1],
-                                                                        region["rgb"][2]};
-            }
-        }
+        for_each_pixel(region, [&](std::uint32_t x, std::uint32_t y) {
+            sum += glm::dvec3(rendering.image.at(x, y));
+            ++count;
+            wanted.rgb[std::size_t(y) * wanted.extent.width + x] = {region["rgb"][0], region["rgb"][1],
+                                                                    region["rgb"][2]};
+        });
         for (int channel = 0; channel < 3; ++channel) {
             const double want = region["rgb"][channel], got = sum[channel] / double(count);
             EXPECT_NEAR(got, want, tolerance * want)

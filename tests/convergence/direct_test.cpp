@@ -1,7 +1,6 @@
 // Direct light that eye paths ask for: right to their noise where nothing else lights a plane, and the same picture as
 // where photons bring it.
 
-#include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -12,7 +11,7 @@
 #include "support/device/gpu.h"
 #include "support/device/rig.h"
 #include "support/files/evidence.h"
-#include "support/files/places.h"
+#include "support/scenes/expectation.h"
 #include "support/scenes/scenes.h"
 
 namespace vkcppm::test {
@@ -25,8 +24,7 @@ class LitPlane : public testing::TestWithParam<std::string> {};
 // two to three.
 TEST_P(LitPlane, IsRightToTheNoiseOfItsSamples) {
     const Scene scene = project_scene(GetParam());
-    std::ifstream file(source_folder() / "scenes" / (GetParam() + ".expect.json"));
-    const nlohmann::json expected = nlohmann::json::parse(file);
+    const nlohmann::json expected = expectation_of(GetParam());
     Settings settings;
     settings.size = Extent{64, 64};
     settings.iterations = 128;
@@ -38,9 +36,10 @@ TEST_P(LitPlane, IsRightToTheNoiseOfItsSamples) {
     for (const auto& region : expected["regions"]) {
         glm::dvec3 sum(0.0);
         std::size_t count = 0;
-        for (std::uint32_t y = region["y"][0]; y < region["y"][1]; ++y) {
-            for (std::uint32_t x = region["x"][0]; x < region["x"][1]; ++x, ++count) sum += glm::dvec3(one.at(x, y));
-        }
+        for_each_pixel(region, [&](std::uint32_t x, std::uint32_t y) {
+            sum += glm::dvec3(one.at(x, y));
+            ++count;
+        });
         for (int channel = 0; channel < 3; ++channel) {
             const double want = region["rgb"][channel];
             EXPECT_NEAR(sum[channel] / double(count), want, 1e-3 * want) << region["name"] << ", channel " << channel;

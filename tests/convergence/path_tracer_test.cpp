@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <string>
 
@@ -21,6 +20,7 @@
 #include "support/device/gpu.h"
 #include "support/files/evidence.h"
 #include "support/files/places.h"
+#include "support/scenes/expectation.h"
 #include "support/scenes/rooms.h"
 #include "support/scenes/scenes.h"
 #include "support/scenes/shapes.h"
@@ -88,8 +88,7 @@ INSTANTIATE_TEST_SUITE_P(Features, PathTracerRooms, testing::ValuesIn(material_c
 /// relative.
 void expect_regions(const std::string& name, const std::function<oracle::PathTracing(const Settings&)>& render,
                     double bias) {
-    std::ifstream file(source_folder() / "scenes" / (name + ".expect.json"));
-    const nlohmann::json expected = nlohmann::json::parse(file);
+    const nlohmann::json expected = expectation_of(name);
     Settings settings;
     settings.size = Extent{expected["size"][0], expected["size"][1]};
     const oracle::PathTracing picture = render(settings);
@@ -97,15 +96,14 @@ void expect_regions(const std::string& name, const std::function<oracle::PathTra
     for (const auto& region : expected["regions"]) {
         glm::dvec3 sum(0.0), variance(0.0);
         double count = 0.0;
-        for (std::uint32_t y = region["y"][0]; y < region["y"][1]; ++y) {
-            for (std::uint32_t x = region["x"][0]; x < region["x"][1]; ++x, ++count) {
-                const glm::dvec3 error(picture.standard_error.at(x, y));
-                sum += glm::dvec3(picture.mean.at(x, y));
-                wanted.rgb[std::size_t(y) * wanted.extent.width + x] = {region["rgb"][0], region["rgb"][1],
-                                                                        region["rgb"][2]};
-                variance += error * error;
-            }
-        }
+        for_each_pixel(region, [&](std::uint32_t x, std::uint32_t y) {
+            const glm::dvec3 error(picture.standard_error.at(x, y));
+            sum += glm::dvec3(picture.mean.at(x, y));
+            ++count;
+            wanted.rgb[std::size_t(y) * wanted.extent.width + x] = {region["rgb"][0], region["rgb"][1],
+                                                                    region["rgb"][2]};
+            variance += error * error;
+        });
         for (int channel = 0; channel < 3; ++channel) {
             const double want = region["rgb"][channel], got = sum[channel] / count;
             const double error = std::sqrt(variance[channel]) / count;
