@@ -27,8 +27,12 @@ struct FlatScene {
     std::vector<glm::uvec4> tangents;       // [triangles] an octahedral tangent a corner, then TANGENTS_*
     std::vector<gpu::SurfaceMaterial> materials;
     std::vector<gpu::TextureLookup> textures;
-    std::vector<std::uint32_t> images;   // texels of all images, a word each
-    std::vector<gpu::Light> lights;      // alias table; empty where nothing emits
+    std::vector<std::uint32_t> images;          // texels of all images, a word each
+    std::vector<gpu::Light> lights;             // alias table; empty where nothing emits
+    std::vector<gpu::AskedLight> asked_lights;  // an alias table a group
+    std::vector<gpu::AskedGroup> asked;         // the groups of lights that there are
+    double local_power = 0.0;                   // of the group of local lights, as light_power of all
+    double environment_power = 0.0;
     double light_power = 0.0;            // of all, mean channel, W (frame-scaled): about, where lights have textures
     Extent environment_size;             // of the map, cut where its pixels were coarse
     std::vector<glm::vec4> environment;  // [pixels] radiance, keep of its alias table

@@ -90,6 +90,29 @@ void add_punctual_lights(const Scene& scene, const FlatScene& flat, std::vector<
     }
 }
 
+/// Points of lights of which a path asks for one, for so many lights of a group: tests/bench/results/transport.md. A
+/// square lamp is two triangles, and of one lamp the next point of the sequence is better than a choice.
+std::uint32_t candidates(std::size_t lights) { return std::uint32_t(std::clamp<std::size_t>(lights / 2, 1, 4)); }
+
+/// Adds the group of those lights that `is_of` says, where there are any; returns its power.
+template <typename IsOf> double add_asked(const std::vector<WeighedLight>& lights, FlatScene& flat, IsOf is_of) {
+    std::vector<std::uint32_t> members;
+    std::vector<double> weights;
+    for (std::uint32_t i = 0; i < lights.size(); ++i) {
+        if (!is_of(lights[i].light.kind)) continue;
+        members.push_back(i);
+        weights.push_back(lights[i].weight);
+    }
+    if (members.empty()) return 0.0;
+    const AliasTable table(weights);
+    flat.asked.push_back({std::uint32_t(flat.asked_lights.size()), std::uint32_t(members.size()),
+                          candidates(members.size()), float(table.total)});
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        flat.asked_lights.push_back({members[i], table.keep[i], members[table.alias[i]], 0});
+    }
+    return table.total;
+}
+
 }  // namespace
 
 void add_lights(const Scene& scene, FlatScene& flat) {
@@ -110,6 +133,10 @@ void add_lights(const Scene& scene, FlatScene& flat) {
         light.alias_entry = table.alias[i];
         flat.lights.push_back(light);
     }
+    flat.local_power =
+        add_asked(lights, flat, [](auto kind) { return kind != LIGHT_DIRECTIONAL && kind != LIGHT_ENVIRONMENT; });
+    add_asked(lights, flat, [](auto kind) { return kind == LIGHT_DIRECTIONAL; });
+    flat.environment_power = add_asked(lights, flat, [](auto kind) { return kind == LIGHT_ENVIRONMENT; });
 }
 
 }  // namespace vkcppm

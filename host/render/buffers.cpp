@@ -53,7 +53,7 @@ std::uint64_t each(Entries entries, const Counts& counts) {
         case Entries::levels: return counts.levels;
         case Entries::where_aovs: return counts.aovs ? 1 : 0;
         case Entries::where_glossy: return counts.glossy ? 1 : 0;
-        case Entries::where_asking: return counts.asking ? 1 : 0;
+        case Entries::asked_groups: return counts.asked_groups;
         case Entries::where_traced: return counts.traced ? 1 : 0;
     }
     return 0;

@@ -41,7 +41,7 @@ enum class Entries {
     levels,
     where_aovs,    // one, where the settings ask for further channels
     where_glossy,  // one, in glossy scenes
-    where_asking,  // one, where eye paths ask for lights
+    asked_groups,  // of lights that eye paths ask for
     where_traced,  // one, in the path tracer
 };
 
@@ -71,10 +71,10 @@ struct Counts {
     std::uint64_t tallies = 0;  // a pixel, as all from here on
     std::uint64_t moments = 0;
     std::uint64_t nearest = 0;
+    std::uint64_t asked_groups = 0;
     std::uint64_t levels = 0;  // a photon slot
     bool aovs = false;
     bool glossy = false;
-    bool asking = false;
     bool traced = false;
 };
 

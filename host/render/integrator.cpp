@@ -65,7 +65,7 @@ Integrator::Integrator(const SceneOnDevice& on_device, const Camera& camera, con
     counts_.nearest = settings.knn;
     counts_.aovs = settings.aovs;
     counts_.glossy = (features & FEATURE_GLOSS) != 0;
-    counts_.asking = ASKS_FOR_LIGHTS(features);
+    counts_.asked_groups = ASKS_FOR_LIGHTS(features) ? GROUPS_ASKED(features) : 0;
     on_device.lend(buffers_);
     buffers_.allocate(
         counts_, [](const BufferRow& row) { return row.entries != Entries::uploaded && row.per != Per::photon_slot; });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -15,10 +16,6 @@
 
 namespace vkcppm {
 namespace {
-
-/// Points of lights of which an eye path asks for one, for so many lights: tests/bench/results/transport.md. A square
-/// lamp is two triangles, and of one lamp the next point of the sequence is better than a choice.
-std::uint32_t candidates(std::size_t lights) { return std::uint32_t(std::clamp<std::size_t>(lights / 2, 1, 4)); }
 
 /// Depth in front of which there is nothing, for an eye that is far from a scene of radius 1; 0 for others.
 double empty_depth(const glm::dvec3& eye, const glm::dvec3& forward) {
@@ -88,7 +85,10 @@ gpu::Params scene_params(const Device& device, const FlatScene& scene, const Cam
     params.light_count = std::uint32_t(scene.lights.size());
     if (split && splits_near_lamps(scene)) params.near_lights = float(near_lamp * scene.radius);
     params.light_power = float(scene.light_power);
-    params.light_candidates = candidates(scene.lights.size());
+    assert(scene.asked.size() <= GROUPS_ASKED(bits_of(scene.features)));
+    std::ranges::copy(scene.asked, params.asked);
+    params.local_power = float(scene.local_power);
+    params.environment_power = float(scene.environment_power);
     params.environment = {scene.environment_size.width, scene.environment_size.height};
     params.lens_radius = float(0.5 * settings.aperture * scene.frame.scale);
     params.focus_distance = float(settings.focus_distance.value_or(1.0) * scene.frame.scale);

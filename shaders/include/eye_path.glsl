@@ -34,7 +34,7 @@ LIGHT_RAYS(UPDATES)
 struct EyePath {
     uint pixel;
     EyeState at;           // its next ray, and what it has found
-    LightRay light_ray;    // that it has chosen so far
+    LightRays light_rays;  // that it has chosen so far
     HitPosition position;  // where it has ended; HIT_UNFINISHED: it, or its ray to a light, goes on next round
     HitWeight weight;
     uint rays;             // traced by this invocation
@@ -66,7 +66,7 @@ EyePath begin_eye_path(uint pixel) {
     path.pixel = pixel;
     path.at = EyeState(vec3(0.0), PATH_OUTSIDE | PATH_STRAIGHT, vec3(0.0), 0.0, vec3(1.0), 0.0, vec3(0.0), 0.0,
                        HIT_UNFINISHED, vec3(1.0));
-    path.light_ray = no_light_ray();
+    path.light_rays = no_light_rays();
     path.position = HitPosition(vec3(0.0), HIT_NONE);
     path.weight = HitWeight(vec3(0.0), 0u);
     path.rays = 0u;
@@ -80,7 +80,9 @@ bool load(inout EyePath path) {
     bool unfinished = hit_kind(left) == HIT_UNFINISHED;
     if (unfinished) {
         path.at = eye_paths[path.pixel];
-        if (EYE_PATHS_ASK) path.light_ray = light_rays[path.pixel];
+        for (uint g = 0u; EYE_PATHS_ASK && g < GROUPS; ++g) {
+            path.light_rays.of[g] = light_rays[g * pixel_count() + path.pixel];
+        }
         if (EYE_PATHS_ASK && path.at.end != HIT_UNFINISHED) {
             path.position = HitPosition(left.position, path.at.end);
             path.weight = hit_weight_at(path.pixel);
@@ -99,7 +101,9 @@ void leave_unfinished(inout EyePath path, bool fresh) {
 void store(EyePath path) {
     if (path.position.state == HIT_UNFINISHED) {
         eye_paths[path.pixel] = path.at;
-        if (EYE_PATHS_ASK) light_rays[path.pixel] = path.light_ray;
+        for (uint g = 0u; EYE_PATHS_ASK && g < GROUPS; ++g) {
+            light_rays[g * pixel_count() + path.pixel] = path.light_rays.of[g];
+        }
     }
     hit_position[path.pixel] = path.position;
     hit_weight[path.pixel] = path.weight;
@@ -221,38 +225,39 @@ vec3 light_from(EyePath path, Vertex v, LightSample light) {
     return v.throughput * factor;
 }
 
-// Asks for a light: one point of one, of several where direct light is asked for (resampled importance sampling;
-// Talbot, Cline and Egbert 2005). Of all that a path asks for one is kept in proportion to what it brings.
+// Asks for lights: of each group for one or several points. Of all of a group that the path asks for one is kept in
+// proportion to what it brings (resampled importance sampling; Talbot, Cline and Egbert 2005).
 void ask(inout EyePath path, Vertex v) {
     uint dimension = LIGHT_DIMENSIONS + v.depth;
-    uvec4 bits = random_words(params.seed, HAS_DIRECT ? 0u : launch.iteration, STREAM_EYE, path.pixel, dimension);
-    if (!HAS_DIRECT) {
-        LightSample light = sample_light(bits, v.u.xy, v.surface.position);
-        take_one(path.light_ray, ray_to(light, light_from(path, v, light), v.surface), v.u.w);
-        return;
-    }
-    for (uint i = 0u; i < params.light_candidates; ++i) {
-        dimension += CANDIDATE_DIMENSIONS;
-        vec4 u = random4(params.seed, launch.iteration, STREAM_EYE, path.pixel, dimension);
-        uvec2 pair = sobol_pair(launch.iteration * params.light_candidates + i, bits.xy);
-        LightSample light = sample_light(pair, u.xy, v.surface.position);
-        vec3 brings = light_from(path, v, light) / float(params.light_candidates);
-        if (!finite(brings)) path.at.emission += brings;  // the update pass is to hear of it
-        take_one(path.light_ray, ray_to(light, brings, v.surface), u.w);
+    uvec4 bits = random_words(params.seed, 0u, STREAM_EYE, path.pixel, dimension);
+    for (uint g = 0u; g < GROUPS; ++g) {
+        AskedGroup group = params.asked[g];
+        uvec2 seeds = bits.xy;
+        for (uint i = 0u; i < group.candidates; ++i) {
+            dimension += CANDIDATE_DIMENSIONS;
+            vec4 u = random4(params.seed, launch.iteration, STREAM_EYE, path.pixel, dimension);
+            uvec2 pair = sobol_pair(launch.iteration * group.candidates + i, seeds);
+            LightSample light = sample_light(group, pair, u.xy, v.surface.position);
+            vec3 brings = light_from(path, v, light) / float(group.candidates);
+            if (!finite(brings)) path.at.emission += brings;  // the update pass is to hear of it
+            take_one(path.light_rays.of[g], ray_to(light, brings, v.surface), u.w);
+        }
+        bits = bits.zwyx;  // the seeds of the next group
     }
 }
 
-// Goes on with the ray to a light; true where it is to go on beyond a surface that is partly there.
-bool light_ray_goes_on(inout EyePath path, uint found, Hit hit) {
-    bool reaches = reaches_light(path.light_ray, found, hit);
-    if (reaches) path.at.emission += path.light_ray.light;
-    bool passes = HAS_ALPHA && !reaches;
-    if (passes) {
-        vec3 direction = path.light_ray.direction;
-        Surface surface = surface_at(hit, direction);
-        pass_surface(path.light_ray, surface, hit.t, coverage_of(material_at(hit, direction, surface)));
+// Goes on with the ray to a light that has been traced, to beyond a surface that is partly there or to its end.
+void go_on_with_light_ray(inout EyePath path, uint found, Hit hit) {
+    LightRay ray = path.light_rays.of[0];
+    bool reaches = reaches_light(ray, found, hit);
+    if (reaches) path.at.emission += ray.light;
+    if (HAS_ALPHA && !reaches) {
+        Surface surface = surface_at(hit, ray.direction);
+        pass_surface(ray, surface, hit.t, coverage_of(material_at(hit, ray.direction, surface)));
+        path.light_rays.of[0] = ray;
+    } else {
+        path.light_rays.of[0].distance = 0.0;
     }
-    return passes;
 }
 
 // ---- choose, follow, gather ----

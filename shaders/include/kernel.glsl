@@ -24,6 +24,7 @@ layout(constant_id = SPEC_WAITS) const uint WAITS = 0u;
 #define HAS_FEATURE_OF_MATERIAL(bit, NAME, words, trait) HAS_FEATURE(bit, NAME, words)
 FEATURE_TABLE(HAS_FEATURE_OF_MATERIAL, HAS_FEATURE, HAS_FEATURE)
 const bool HAS_PUNCTUAL_LIGHTS = (FEATURES & FEATURES_OF_PUNCTUAL_LIGHTS) != 0u;
+const uint GROUPS = GROUPS_ASKED(FEATURES);
 const bool EYE_PATHS_ASK = ASKS_FOR_LIGHTS(FEATURES);
 
 layout(push_constant, scalar) uniform LaunchBlock { Launch launch; };

@@ -15,6 +15,7 @@
 #include "include/texture.glsl"
 
 LIGHTS(RECORDS)
+ASKED_LIGHTS(RECORDS)
 
 // Of a spot or directional light: the unit direction of travel along its axis. Of a spot light: versines of its inner
 // and its outer cone.
@@ -51,27 +52,25 @@ Light choose_light(uvec4 bits, out uint index) {
     return light;
 }
 
-// The same by one word, of which the light keeps what it has not used: equidistributed words stay so.
-Light choose_light(inout uint word, out uint index) {
-    uint low;
-    umulExtended(word, params.light_count, index, low);
-    Light light = lights_at(index);
+// Lights that are asked for together are drawn in proportion to their power, too, by one word, of which the light keeps
+// what it has not used: equidistributed words stay so.
+uint choose_asked(AskedGroup group, inout uint word) {
+    if (group.count == 1u) return asked_lights_at(group.first).light;
+    uint entry, low;
+    umulExtended(word, group.count, entry, low);
+    AskedLight asked = asked_lights_at(group.first + entry);
     float share = float(low >> 8u) * 5.9604644775390625e-8;
-    bool keeps = share < light.keep;
-    share = keeps ? share / light.keep : (share - light.keep) / (1.0 - light.keep);
+    bool keeps = share < asked.keep;
+    share = keeps ? share / asked.keep : (share - asked.keep) / (1.0 - asked.keep);
     word = uint(min(share, 0.99999994) * 4294967296.0);
-    if (!keeps) {
-        index = light.alias_entry;
-        light = lights_at(index);
-    }
-    return light;
+    return keeps ? asked.light : asked.alias_light;
 }
 
-// About the density, per area, in which points of an emitter are drawn: exact but for what textures vary. emission:
-// without textures.
+// About the density, per area, in which points of an emitter are asked for: exact but for what textures vary.
+// emission: without textures.
 float emitter_density(vec3 emission, bool double_sided) {
     // Not the sum of the channels, which may be beyond floats.
-    return dot(emission / params.light_power, vec3(double_sided ? 2.0 * PI / 3.0 : PI / 3.0));
+    return dot(emission / params.local_power, vec3(double_sided ? 2.0 * PI / 3.0 : PI / 3.0));
 }
 
 // The same of a triangle that emits.
@@ -88,14 +87,14 @@ float met_density(SurfaceMaterial material, Surface surface, vec3 direction, flo
     return emitter_density(emission, has(material, SURFACE_DOUBLE_SIDED)) * distance * distance / cosine;
 }
 
-// The density, 1/sr, in which directions to the environment are drawn.
+// The density, 1/sr, in which directions to the environment are asked for.
 float environment_density(vec3 away) {
     uint pixel = environment_pixel(away);
     vec3 radiance = texelFetch(environment_texels, int(pixel)).rgb;
-    return (radiance.r + radiance.g + radiance.b) * environment_area(pixel) / (3.0 * params.light_power);
+    return (radiance.r + radiance.g + radiance.b) * environment_area(pixel) / (3.0 * params.environment_power);
 }
 
-// One sample of all light that arrives at a point.
+// One sample of the light of a group that arrives at a point.
 struct LightSample {
     vec3 direction;   // unit, towards the light
     float distance;
@@ -105,8 +104,12 @@ struct LightSample {
     uint triangle;    // that the light is a part of; NO_TRIANGLE: none
 };
 
-// Of one light: a point in proportion to what is emitted there. bits: two random words; v: two numbers in [0, 1).
-LightSample sample_one_light(Light light, uint index, uvec2 bits, vec2 v, vec3 position) {
+// A light of the group, and a point in proportion to what is emitted there. bits: two random words, which may be
+// equidistributed; v: two numbers in [0, 1).
+LightSample sample_light(AskedGroup group, uvec2 bits, vec2 v, vec3 position) {
+    uint index = choose_asked(group, bits.x);
+    Light light = lights_at(index);
+    light.power *= group.power / params.light_power;
     vec2 u = unit_floats(bits.xyxy).xy;
     vec3 towards = light.position - position;
     LightSample s = LightSample(vec3(0.0), FAR, vec3(0.0), 0.0, NO_TRIANGLE);
@@ -146,20 +149,6 @@ LightSample sample_one_light(Light light, uint index, uvec2 bits, vec2 v, vec3 p
         s.density = environment_density(s.direction);
     }
     return s;
-}
-
-// Of all: lights in proportion to their power. bits: four random words.
-LightSample sample_light(uvec4 bits, vec2 v, vec3 position) {
-    uint index;
-    Light light = choose_light(bits, index);
-    return sample_one_light(light, index, bits.zw, v, position);
-}
-
-// The same by two words that are equidistributed.
-LightSample sample_light(uvec2 pair, vec2 v, vec3 position) {
-    uint index;
-    Light light = choose_light(pair.x, index);
-    return sample_one_light(light, index, pair, v, position);
 }
 
 // The start of a light path: lights in proportion to their power, then position and direction in proportion to what the

@@ -15,6 +15,21 @@ const float POSITION_ERROR = 1e-6;  // frame units, as the smallest radius
 
 LightRay no_light_ray() { return LightRay(vec3(0.0), 0.0, vec3(0.0), NO_TRIANGLE, vec3(0.0)); }
 
+LightRays no_light_rays() {
+    LightRays rays;
+    for (uint g = 0u; g < ASKED_GROUPS; ++g) rays.of[g] = no_light_ray();
+    return rays;
+}
+
+// True while there is a ray to trace: the first.
+bool has_light_ray(inout LightRays rays) {
+    for (uint g = 1u; g < GROUPS && !(rays.of[0].distance > 0.0); ++g) {
+        for (uint i = 1u; i < GROUPS; ++i) rays.of[i - 1u] = rays.of[i];
+        rays.of[GROUPS - 1u].distance = 0.0;
+    }
+    return rays.of[0].distance > 0.0;
+}
+
 // What the solid that the ray goes through lets pass. flags: of the path that asks, at the surface.
 vec3 transmittance_to(LightSample light, uint flags, Bsdf bsdf, Surface surface) {
     if (!HAS_VOLUME) return vec3(1.0);

@@ -2,10 +2,10 @@
 // One invocation a pixel: a ray through a random point of the pixel (and of the lens), on to a surface on which photons
 // are gathered. The rule, for every surface alike: paths follow lobes of width 0 (mirrors, smooth glass, smooth coats)
 // and gather on diffuse lobes; between following a rough lobe and gathering on it the path chooses at random, and each
-// way weighs what it finds (followed_weight of include/bsdf.glsl). Whatever it chooses, it asks for a light too
+// way weighs what it finds (followed_weight of include/bsdf.glsl). Whatever it chooses, it asks for lights too
 // (next-event estimation), and weighs what it could have met by following by the balance heuristic (multiple importance
-// sampling; Veach and Guibas 1995). Of all that a path asks for one is chosen in proportion to what it brings, and one
-// ray traced: else the longest path of a SIMD group (subgroup) would hold up the others twice as long.
+// sampling; Veach and Guibas 1995). Of all that a path asks for of one group of lights one is chosen in proportion to
+// what it brings and one ray traced: else the longest path of a SIMD group (subgroup) would hold up the others longer.
 // Reads the scene, and pixels; writes hit_position, hit_weight, hit_emission, hit_surface in glossy scenes, aovs where
 // asked for, searches, and eye_paths where a path is unfinished. O(bounces x log triangles). Fails by running out of
 // steps: the path then goes on next round.
@@ -56,20 +56,21 @@ void follow_path(inout EyePath path) {
     }
 }
 
-// Traces the ray to the light that the path has asked for, if any.
-void follow_light_ray(inout EyePath path) {
-    while (path.light_ray.distance > 0.0) {
+// Traces the rays to the lights that the path has asked for, if any.
+void follow_light_rays(inout EyePath path) {
+    while (has_light_ray(path.light_rays)) {
         --path.steps;
         bool fresh = path.steps + 1 == int(params.step_budget);
+        LightRay ray = path.light_rays.of[0];
         Hit hit;
-        uint found = trace(path.light_ray.origin, path.light_ray.direction, path.steps, hit);
+        uint found = trace(ray.origin, ray.direction, path.steps, hit);
         if (found == TRACE_UNFINISHED) {
             path.at.end = path.position.state;
             leave_unfinished(path, fresh);
             break;
         }
         ++path.rays;
-        if (!light_ray_goes_on(path, found, hit)) break;
+        go_on_with_light_ray(path, found, hit);
     }
 }
 
@@ -93,7 +94,7 @@ void main() {
     bool begins = bounces_of(path.at.flags) == 0u;
     if (path.at.end == HIT_UNFINISHED) follow_path(path);
     // A loop of its own: software Vulkan runs all of a loop's code for every ray of it, and this one hardly shades.
-    if (EYE_PATHS_ASK && path.position.state != HIT_UNFINISHED) follow_light_ray(path);
+    if (EYE_PATHS_ASK && path.position.state != HIT_UNFINISHED) follow_light_rays(path);
     store(path);
     // The knn pass, which has little to do after the first iterations, goes through these alone.
     if (gathers(path.position) && searches_now(pixel)) {

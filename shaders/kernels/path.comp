@@ -1,7 +1,7 @@
 #version 460
 // The path tracer: one invocation a pixel, launch.paths paths of it one after the other, so that a SIMD group
-// (subgroup) stays full. Unbiased: every vertex with a lobe of width above 0 asks for one point of the lights
-// (next-event estimation), and what the next ray meets counts too (BSDF sampling); both are weighed by the power
+// (subgroup) stays full. Unbiased: every vertex with a lobe of width above 0 asks for one point of each group of
+// lights (next-event estimation), and what the next ray meets counts too (BSDF sampling); both are weighed by the power
 // heuristic (multiple importance sampling; Veach 1997, section 9.2.4), punctual lights are asked for alone. Russian
 // roulette ends paths that bring little. A ray to a light is stopped by glass. Where light is split (FEATURE_SPLIT)
 // what photons bring is left out; else light of punctual lights by way of delta lobes is missing, which no path finds.
@@ -25,10 +25,11 @@ IMAGE(STORES)
 
 #define FIRST_ROULETTE 4u      // bounce from which Russian roulette decides whether a path goes on
 #define FIRST_DIMENSION 16u    // of random numbers, beyond the stratified ones; three a bounce
+#define GROUP_DIMENSIONS 4096u //   of a group of lights, beyond them
 
 TraceState new_path(uint done, vec3 sum) {
     return TraceState(vec3(0.0), PATH_OUTSIDE | PATH_STRAIGHT, vec3(0.0), DELTA, vec3(1.0), 0.0, vec3(0.0), done, sum,
-                      0u, no_light_ray());
+                      0u, no_light_rays());
 }
 
 float power_heuristic(float density, float other) {
@@ -49,18 +50,25 @@ vec3 met_emission(TraceState state, Surface surface, SurfaceMaterial material) {
     return material.emission * met_weight(state, met_density(material, surface, state.direction, state.distance));
 }
 
-// Asks for a point of the lights, weighed against meeting it.
-void ask_for_light(inout TraceState state, Bsdf bsdf, Surface surface, LobeWeights lobes, uvec4 bits, vec2 v) {
+// Asks for a point of the lights of each group, weighed against meeting it. dimension: of the bounce.
+void ask_for_light(inout TraceState state, Bsdf bsdf, Surface surface, LobeWeights lobes, uint pixel, uint path,
+                   uint dimension) {
     vec3 wo = -state.direction;
-    LightSample light = sample_light(bits, v, surface.position);
-    vec3 factor = light.radiance * rough_bsdf(bsdf, surface, wo, light.direction, PART_ALL);
-    factor *= abs(dot(light.direction, surface.normal));
-    if (light.density > 0.0) {
-        factor *= power_heuristic(light.density, scatter_density(bsdf, surface, lobes, wo, light.direction));
-    }
-    factor *= transmittance_to(light, state.flags, bsdf, surface);
-    if (!photons_bring_asked(state.flags, light.triangle, light.distance)) {
-        state.light_ray = ray_to(light, state.throughput * factor, surface);
+    for (uint g = 0u; g < GROUPS; ++g) {
+        AskedGroup group = params.asked[g];
+        if (group.count == 0u) continue;
+        uint own = dimension + g * GROUP_DIMENSIONS;
+        uvec4 bits = random_words(params.seed, path, STREAM_PATH, pixel, own);
+        vec4 v = random4(params.seed, path, STREAM_PATH, pixel, own + 2u);
+        LightSample light = sample_light(group, bits.zw, v.xy, surface.position);
+        if (photons_bring_asked(state.flags, light.triangle, light.distance)) continue;
+        vec3 factor = light.radiance * rough_bsdf(bsdf, surface, wo, light.direction, PART_ALL);
+        factor *= abs(dot(light.direction, surface.normal));
+        if (light.density > 0.0) {
+            factor *= power_heuristic(light.density, scatter_density(bsdf, surface, lobes, wo, light.direction));
+        }
+        factor *= transmittance_to(light, state.flags, bsdf, surface);
+        state.light_rays.of[g] = ray_to(light, state.throughput * factor, surface);
     }
 }
 
@@ -101,7 +109,6 @@ bool meet(inout TraceState state, uint pixel, uint path, Hit hit, Surface surfac
     state.distance += hit.t;
     if (HAS_VOLUME) state.throughput *= transmittance(state.flags, surface, hit.t);
     uint dimension = FIRST_DIMENSION + 3u * bounces;
-    uvec4 bits = random_words(params.seed, path, STREAM_PATH, pixel, dimension);
     vec4 u = random4(params.seed, path, STREAM_PATH, pixel, dimension + 1u);
     vec4 v = random4(params.seed, path, STREAM_PATH, pixel, dimension + 2u);
     bool alive = true;
@@ -118,7 +125,7 @@ bool meet(inout TraceState state, uint pixel, uint path, Hit hit, Surface surfac
         LobeWeights lobes = lobes_of(bsdf, surface, -state.direction);
         // Lamps seen by way of weak lobes must not be missed.
         if ((state.flags & PATH_STRAIGHT) != 0u) lobes = evened(lobes);
-        if (params.light_count > 0u && gathers_light(bsdf)) ask_for_light(state, bsdf, surface, lobes, bits, v.xy);
+        if (gathers_light(bsdf)) ask_for_light(state, bsdf, surface, lobes, pixel, path, dimension);
         alive = scatter(state, bsdf, surface, lobes, u);
         state.distance = 0.0;
     }
@@ -133,7 +140,7 @@ bool meet(inout TraceState state, uint pixel, uint path, Hit hit, Surface surfac
     return alive;
 }
 
-// The path and its ray to a light have ended: adds what it has brought, and begins the next one.
+// The path and its rays to lights have ended: adds what it has brought, and begins the next one.
 void end_path(inout TraceState state) {
     bool valid = finite(state.radiance);
     if (!valid) atomicAdd(status.invalid, 1u);
@@ -157,11 +164,12 @@ void main() {
             break;
         }
         uint path = launch.iteration * launch.paths + state.done;
-        bool shadow = state.light_ray.distance > 0.0;
+        bool shadow = has_light_ray(state.light_rays);
+        LightRay light_ray = state.light_rays.of[0];
         float from_eye;
         if ((state.flags & PATH_BOUNCES) == 0u) camera_ray(pixel, path, state.origin, state.direction, from_eye);
-        vec3 origin = shadow ? state.light_ray.origin : state.origin;
-        vec3 direction = shadow ? state.light_ray.direction : state.direction;
+        vec3 origin = shadow ? light_ray.origin : state.origin;
+        vec3 direction = shadow ? light_ray.direction : state.direction;
         bool fresh = steps + 1 == int(params.step_budget);
         Hit hit;
         uint found = trace(origin, direction, steps, hit);
@@ -171,9 +179,9 @@ void main() {
             break;
         }
         ++rays;
-        if (shadow && reaches_light(state.light_ray, found, hit)) {
-            state.radiance += state.light_ray.light;
-            state.light_ray.distance = 0.0;
+        if (shadow && reaches_light(light_ray, found, hit)) {
+            state.radiance += light_ray.light;
+            state.light_rays.of[0].distance = 0.0;
         } else if (found == TRACE_MISS) {
             meet_nothing(state, direction);
         } else {
@@ -181,13 +189,14 @@ void main() {
             SurfaceMaterial material = material_at(hit, direction, surface);
             float coverage = HAS_ALPHA ? coverage_of(material) : 1.0;
             if (shadow) {
-                pass_surface(state.light_ray, surface, hit.t, coverage);
+                pass_surface(light_ray, surface, hit.t, coverage);
+                state.light_rays.of[0] = light_ray;
             } else {
                 ++state.flags;
                 state.ended = meet(state, pixel, path, hit, surface, material, coverage) ? 0u : 1u;
             }
         }
-        if (state.ended != 0u && state.light_ray.distance == 0.0) end_path(state);
+        if (state.ended != 0u && !has_light_ray(state.light_rays)) end_path(state);
     }
     traces[pixel] = state;
     if (state.done == launch.paths) image[pixel] = state.sum / float(launch.paths);

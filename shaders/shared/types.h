@@ -100,6 +100,13 @@ FEATURE_TABLE(FEATURE_BIT_OF_MATERIAL, FEATURE_BIT, FEATURE_BIT)
 #define FEATURES_OF_LAYERS (FEATURE_CLEARCOAT | FEATURE_ALPHA | FEATURE_NORMAL_MAPS)
 #define FEATURES_OF_PUNCTUAL_LIGHTS (FEATURE_POINT_LIGHTS | FEATURE_SPOT_LIGHTS | FEATURE_DIRECTIONAL_LIGHTS)
 
+#define FEATURES_OF_LOCAL_LIGHTS (FEATURE_AREA_LIGHTS | FEATURE_POINT_LIGHTS | FEATURE_SPOT_LIGHTS)
+// Groups of lights that are asked for apart: AskedGroup.
+#define GROUPS_ASKED(features)                                     \
+    ((((features) & FEATURES_OF_LOCAL_LIGHTS) != 0u ? 1u : 0u) +   \
+     (((features) & FEATURE_DIRECTIONAL_LIGHTS) != 0u ? 1u : 0u) + \
+     (((features) & FEATURE_ENVIRONMENT) != 0u ? 1u : 0u))
+
 #define MAX_RINGS 4
 #define MAX_SECTORS 12
 
@@ -245,6 +252,25 @@ RECORD(TextureLookup)
     OPTIONAL(FEATURE_TEXTURED_LIGHTS, 0u, uint, textured)  /* its radiance or alpha comes from textures */
 RECORD(Light)
 
+// Lights are asked for in groups: local ones (triangles, points, spots), directional ones, the environment. Each has
+// candidates and a ray of its own, for power compares lights within a group alone: that of a sun, all that enters the
+// scene's bounds, tells little of what arrives indoors.
+#define ASKED_GROUPS 3u  // at most
+struct AskedGroup {
+    uint first;       // of asked_lights
+    uint count;
+    uint candidates;  // of which an eye path takes one
+    float power;      // of all of them, mean channel, W (frame-scaled): they are asked for in proportion to theirs
+};
+
+// An entry of the alias table of a group; the numbers are of lights.
+#define FIELDS_AskedLight(FIELD, ARRAY, OPTIONAL) \
+    FIELD(uint, light) \
+    FIELD(float, keep)        /* probability to keep this light */ \
+    FIELD(uint, alias_light)  /* the other */ \
+    FIELD(uint, unused)
+RECORD(AskedLight)
+
 // A stored photon: what the distance test reads (16 bytes) and what an accepted photon adds (16 bytes).
 #define FIELDS_Photon(FIELD, ARRAY, OPTIONAL) \
     FIELD(vec3, position) \
@@ -309,6 +335,11 @@ struct LightRay {
     vec3 light;        // what it adds to the picture where nothing is in between
 };
 #define NO_TRIANGLE 0xffffffffu
+
+// One of each group of lights; the first of them is traced next.
+struct LightRays {
+    LightRay of[ASKED_GROUPS];
+};
 
 // An eye path between two rays: while it is in flight, and where it runs out of steps until the next round.
 struct EyeState {
@@ -392,7 +423,7 @@ struct PathState {
 #define NO_PATH 0xffffffffu
 
 // A path of the path tracer in flight at the end of a round, one a pixel: the next ray of the path, and before it the
-// ray to a light, where one is asked for.
+// rays to lights, where some are asked for.
 struct TraceState {
     vec3 origin;
     uint flags;            // bounces | PATH_*
@@ -403,8 +434,8 @@ struct TraceState {
     vec3 radiance;         // of this path so far
     uint done;             // paths of this launch
     vec3 sum;              //   and their radiance
-    uint ended;            // 1: the path ends with the ray to the light
-    LightRay light_ray;
+    uint ended;            // 1: the path ends with the rays to lights
+    LightRays light_rays;
 };
 
 // Where a resumable walk over the grid goes on.
@@ -472,7 +503,9 @@ struct Params {
     uint light_count;
     float near_lights;     // frame units; 0 where light is not split
     float light_power;     // of all lights, mean channel, W (frame-scaled): what the alias table is in proportion to
-    uint light_candidates; // of which an eye path asks for one, where it asks for direct light
+    AskedGroup asked[ASKED_GROUPS];  // GROUPS_ASKED of them, at the end some of no lights
+    float local_power;     // of the group of local lights
+    float environment_power;
     uvec2 environment;     // its columns and rows
     float lens_radius;     // frame units; at focus_distance along the axis a point is sharp
     float focus_distance;
@@ -530,6 +563,7 @@ static_assert(sizeof(BvhNode) == 64);
 static_assert(sizeof(TriangleGeometry) == 48);
 static_assert(sizeof(TriangleShading) == 16);
 static_assert(sizeof(SurfaceMaterial) == 144 && sizeof(TextureLookup) == 48 && sizeof(Light) == 96);
+static_assert(sizeof(AskedLight) == 16);
 static_assert(sizeof(Photon) == 16 && sizeof(PhotonFlux) == 16);
 static_assert(sizeof(HitPosition) == 16 && sizeof(HitWeight) == 16 && sizeof(HitEmission) == 16 &&
               sizeof(HitSurface) == 16);

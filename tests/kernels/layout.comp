@@ -35,6 +35,10 @@ void bump(inout vec2 a[MAX_SECTORS]) { for (int i = 0; i < MAX_SECTORS; ++i) bum
 
 #define X(member) bump(value.member);
 void bump(inout LightRay value) { MEMBERS_LIGHT_RAY }
+void bump(inout LightRay a[ASKED_GROUPS]) { for (int i = 0; i < ASKED_GROUPS; ++i) bump(a[i]); }
+void bump(inout LightRays value) { MEMBERS_LIGHT_RAYS }
+void bump(inout AskedGroup value) { MEMBERS_ASKED_GROUP }
+void bump(inout AskedGroup a[ASKED_GROUPS]) { for (int i = 0; i < ASKED_GROUPS; ++i) bump(a[i]); }
 #define BLOCK(BINDING, Block, Struct, values) layout(binding = BINDING, scalar) buffer Block { Struct values[]; };
 #define BUMP(Struct, value_in, value_out, MEMBERS) \
     {                                              \
@@ -73,6 +77,7 @@ BLOCK(FIRST + 22, TraceStateBlock, TraceState, trace_states)
 BLOCK(FIRST + 23, LightRayBlock, LightRay, light_rays)
 BLOCK(FIRST + 24, EyeStateBlock, EyeState, eye_states)
 BLOCK(FIRST + 25, SearchStateBlock, SearchState, search_states)
+BLOCK(FIRST + 26, AskedLightBlock, AskedLight, asked_lights)
 
 void main() {
     if (gl_GlobalInvocationID.x != 0u) return;
@@ -102,6 +107,7 @@ void main() {
     ROUND_TRIP(LightRay, light_rays, MEMBERS_LIGHT_RAY)
     ROUND_TRIP(EyeState, eye_states, MEMBERS_EYE_STATE)
     ROUND_TRIP(SearchState, search_states, MEMBERS_SEARCH_STATE)
+    ROUND_TRIP(AskedLight, asked_lights, MEMBERS_ASKED_LIGHT)
     BUMP(Params, params, params_array[4], MEMBERS_PARAMS)
     BUMP(Launch, launch, launches[4], MEMBERS_LAUNCH)
 }

@@ -15,7 +15,10 @@
 #define MEMBERS_TEXTURE_LOOKUP X(first) X(width) X(height) X(flags) X(matrix) X(offset) X(unused)
 #define MEMBERS_LIGHT X(position) X(kind) X(e1) X(keep) X(e2) X(alias_entry) X(power) X(double_sided) X(corner) \
     X(triangle) X(textured)
+#define MEMBERS_ASKED_GROUP X(first) X(count) X(candidates) X(power)
+#define MEMBERS_ASKED_LIGHT X(light) X(keep) X(alias_light) X(unused)
 #define MEMBERS_LIGHT_RAY X(origin) X(distance) X(direction) X(triangle) X(light)
+#define MEMBERS_LIGHT_RAYS X(of)
 #define MEMBERS_PHOTON X(position) X(normal)
 #define MEMBERS_PHOTON_FLUX X(power) X(direction)
 #define MEMBERS_HIT_POSITION X(position) X(state)
@@ -30,7 +33,7 @@
 #define MEMBERS_PATH_STATE X(origin) X(path) X(direction) X(flags) X(power) X(stored) X(power0) X(begin) X(next) \
     X(near)
 #define MEMBERS_TRACE_STATE X(origin) X(flags) X(direction) X(density) X(throughput) X(distance) X(radiance) X(done) \
-    X(sum) X(ended) X(light_ray)
+    X(sum) X(ended) X(light_rays)
 #define MEMBERS_CURSOR X(cell) X(photon)
 #define MEMBERS_GRID X(origin) X(levels) X(dims) X(cell) X(inverse_cell) X(reach) X(first) X(entries)
 #define MEMBERS_STATUS X(blocked) X(completed) X(capacity) X(stuck) X(invalid) X(rays) \
@@ -39,7 +42,7 @@
 #define MEMBERS_PARAMS \
     X(eye) X(width) X(right) X(height) X(up) X(seed) X(forward) X(pixel_radius) X(bounds_low) X(photons) \
     X(bounds_high) X(photons_per_lane) X(photon_lanes) X(photon_capacity) X(bounds_radius) X(max_depth) \
-    X(light_count) X(near_lights) X(light_power) X(light_candidates) X(environment) \
+    X(light_count) X(near_lights) X(light_power) X(asked) X(local_power) X(environment_power) X(environment) \
     X(lens_radius) X(focus_distance) X(start) X(step_budget) X(knn) X(radius_cap) X(radius_floor) X(footprint_cap) \
     X(inverse_paths) X(flux_unit) X(alpha) X(k) X(beta) \
     X(cells) X(grid_levels) X(most_levels) X(sort_lanes) X(scan_blocks) X(threshold) X(sector_edge) X(sector_centre)

@@ -37,8 +37,13 @@ VISITOR(TriangleShading, MEMBERS_TRIANGLE_SHADING)
 VISITOR(SurfaceMaterial, MEMBERS_SURFACE_MATERIAL)
 VISITOR(TextureLookup, MEMBERS_TEXTURE_LOOKUP)
 VISITOR(Light, MEMBERS_LIGHT)
+VISITOR(AskedGroup, MEMBERS_ASKED_GROUP)
+template <typename Visit> void scalars(gpu::AskedGroup& group, Visit visit) { each_scalar(group, visit); }
+VISITOR(AskedLight, MEMBERS_ASKED_LIGHT)
 VISITOR(LightRay, MEMBERS_LIGHT_RAY)
 template <typename Visit> void scalars(gpu::LightRay& ray, Visit visit) { each_scalar(ray, visit); }
+VISITOR(LightRays, MEMBERS_LIGHT_RAYS)
+template <typename Visit> void scalars(gpu::LightRays& rays, Visit visit) { each_scalar(rays, visit); }
 VISITOR(Photon, MEMBERS_PHOTON)
 VISITOR(PhotonFlux, MEMBERS_PHOTON_FLUX)
 VISITOR(HitPosition, MEMBERS_HIT_POSITION)
@@ -115,7 +120,7 @@ protected:
         F(7, HitPosition) F(8, HitWeight) F(9, HitEmission) F(10, Gathered) F(11, PixelState) F(12, Aovs) F(13, Film) \
             F(14, PathState) F(15, Cursor) F(16, Grid) F(17, Status) F(18, Params) F(19, Launch)                      \
                 F(20, TextureLookup) F(21, HitSurface) F(22, TraceState) F(23, LightRay) \
-                    F(24, EyeState) F(25, SearchState)
+                    F(24, EyeState) F(25, SearchState) F(26, AskedLight)
 // clang-format on
 
 TEST_F(Layout, EveryMemberStandsWhereTheHostPutsIt) {
