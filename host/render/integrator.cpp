@@ -93,7 +93,8 @@ Integrator::Integrator(const SceneOnDevice& on_device, const Camera& camera, con
 
 /// Photons, starting radii, the estimator's parameters and the grid's sizes. group: invocations of a work group.
 void Integrator::set_params(const FlatScene& scene, const Settings& settings, std::uint32_t group) {
-    params_.photons = scene.lights.empty() ? 0 : settings.photons;
+    const std::uint32_t photons = settings.photons.value_or(usual_light_paths);
+    params_.photons = scene.lights.empty() ? 0 : photons;
     params_.inverse_paths = params_.photons > 0 ? 1.0f / float(params_.photons) : 0.0f;
     params_.flux_unit = scene.light_power > 0.0 ? float(std::exp2(-std::floor(std::log2(scene.light_power)))) : 1.0f;
     const std::uint32_t per_lane = std::clamp(params_.photons / device_.busy_lanes(), 1u, most_photons_per_lane);
@@ -103,19 +104,19 @@ void Integrator::set_params(const FlatScene& scene, const Settings& settings, st
     params_.photon_capacity = per_lane * first_photon_capacity;
     params_.knn = settings.knn;
     params_.radius_cap = float(radius_cap * std::max(scene.radius, 1e-3));
-    const double mean_disc = double(settings.knn) * std::max(scene.area, 1e-12) / double(settings.photons);
+    const double mean_disc = double(settings.knn) * std::max(scene.area, 1e-12) / double(photons);
     params_.radius_floor = std::min(params_.radius_cap, float(std::sqrt(mean_disc / std::numbers::pi)));
     params_.footprint_cap = float(settings.caustics.value_or(footprint_cap));
     params_.alpha = float(settings.alpha);
     params_.k = float(settings.k);
     params_.beta = float(settings.beta);
-    params_.cells = std::bit_ceil(std::clamp(16 * settings.photons, 1u << 12, 1u << 20));
+    params_.cells = std::bit_ceil(std::clamp(16 * photons, 1u << 12, 1u << 20));
     params_.grid_levels = 1;
     // By the settings alone, so that it does not hang on how the render was cut; for 65,536 paths all there are.
     constexpr std::uint64_t sorted_bytes = 1u << 27, usual_photons = 16;  // a path
-    params_.most_levels = std::uint32_t(std::clamp<std::uint64_t>(
-        sorted_bytes / (sizeof(gpu::Photon) * usual_photons * settings.photons), 1, GRID_LEVELS));
-    params_.sort_lanes = std::bit_ceil(std::clamp(settings.photons / 128, 64u, 4096u));
+    params_.most_levels = std::uint32_t(
+        std::clamp<std::uint64_t>(sorted_bytes / (sizeof(gpu::Photon) * usual_photons * photons), 1, GRID_LEVELS));
+    params_.sort_lanes = std::bit_ceil(std::clamp(photons / 128, 64u, 4096u));
     params_.scan_blocks = std::clamp(params_.cells / 256, group, 4096u);
     const auto key_bits = std::uint32_t(std::countr_zero(params_.cells));
     digits_ = (key_bits + 7) / 8;

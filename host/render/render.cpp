@@ -7,6 +7,7 @@
 #include "core/process.h"
 #include "flat/flatten.h"
 #include "render/integrator.h"
+#include "render/light_paths.h"
 #include "render/submission.h"
 #include "vk/device.h"
 
@@ -54,6 +55,7 @@ Rendering render(const Scene& scene, const Settings& wanted, Device& device, con
     const Settings& settings = result.settings;
     const FlatScene flat = flatten(scene);
     const SceneOnDevice on_device(device, flat);
+    if (!settings.photons) result.settings.photons = light_paths(on_device, camera_of(settings, scene), settings);
     Integrator integrator(on_device, camera_of(settings, scene), settings);
     if (checkpointing.from) {
         result.report = checkpointing.from->report;

@@ -13,6 +13,9 @@ namespace vkcppm {
 /// Beyond, the counter of random numbers starts again and iterations repeat.
 inline constexpr std::uint32_t max_iterations = (1u << 30) - 1;
 
+/// Light paths an iteration where Settings::photons is absent and nothing counts them for the scene.
+inline constexpr std::uint32_t usual_light_paths = 65536;
+
 /// Values of Settings::direct.
 inline constexpr const char* direct_sampled = "sampled";
 inline constexpr const char* direct_gathered = "gathered";

@@ -24,8 +24,10 @@ SETTING(iterations, std::uint32_t, 64, "iterations", bound, within(1u, max_itera
 SETTING(seconds, std::optional<double>, std::nullopt, "time", bound, between(0.0, 1e9), seconds,
         "Stop after the iteration in which this time has passed: 90, 90s, 2m, 1.5h, 500ms")
 
-SETTING(photons, std::uint32_t, 65536, "photons", picture, within(1u, 1u << 24), count,
-        "Light paths emitted an iteration (default: {})")
+// Absent: counted for the scene and the size of the picture (render/light_paths.h); resolved by what renders.
+SETTING(photons, std::optional<std::uint32_t>, std::nullopt, "photons", picture, within(1u, 1u << 24), count,
+        "Light paths emitted an iteration (default: as many as suit scene and size;\n"
+        "65536 with --direct gathered and of a reference)")
 
 // Absent: 512 on the longer side.
 SETTING(size, std::optional<Extent>, std::nullopt, "size", picture, pixels(65536u, 1u << 27), pixels,

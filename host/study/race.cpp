@@ -11,6 +11,7 @@
 #include "core/process.h"
 #include "flat/flatten.h"
 #include "render/integrator.h"
+#include "render/light_paths.h"
 #include "render/render.h"
 #include "render/submission.h"
 #include "vk/device.h"
@@ -135,6 +136,11 @@ RaceResult run_race(const Scene& scene, const RaceSettings& race, const Image& r
 
     const FlatScene flat = flatten(scene);
     const SceneOnDevice on_device(device, flat);
+    // One number for all, of the first.
+    const Settings& first = race.entrants.front().settings;
+    const std::uint32_t photons =
+        first.photons ? *first.photons : light_paths(on_device, camera_of(first, scene), first);
+    for (RaceRun& run : result.runs) run.entrant.settings.photons = photons;
     const double begin = wall_now();
     for (std::uint32_t s = 0; s < race.seeds && !result.interrupted; ++s) {
         const std::uint32_t seed = race.entrants.front().settings.seed + s;

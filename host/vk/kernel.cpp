@@ -15,6 +15,18 @@ namespace {
 
 constexpr std::uint32_t stamps_a_pool = 1024;
 
+/// Those of the constants that a module has: pipelines that differ in others alone are one.
+Specialization of_module(std::span<const std::uint32_t> spirv, const Specialization& constants) {
+    constexpr std::uint32_t header = 5, op_decorate = 71, decoration_spec_id = 1;
+    Specialization found;
+    for (std::size_t at = header; at < spirv.size(); at += std::max(1u, spirv[at] >> 16)) {
+        if ((spirv[at] & 0xffff) != op_decorate || spirv[at + 2] != decoration_spec_id) continue;
+        const auto constant = constants.find(spirv[at + 3]);
+        if (constant != constants.end()) found.insert(*constant);
+    }
+    return found;
+}
+
 }  // namespace
 
 struct Bindings::Impl {
@@ -74,14 +86,15 @@ Kernel::Kernel(Device& device, std::string name, std::span<const std::uint32_t> 
     : impl_(std::make_unique<Impl>()) {
     impl_->name = std::move(name);
     impl_->workgroup = specialization.at(SPEC_WORKGROUP);
-    std::shared_ptr<vk::raii::Pipeline>& made = device.impl().made[{fnv1a_of(spirv), specialization}];
+    const Specialization own = of_module(spirv, specialization);
+    std::shared_ptr<vk::raii::Pipeline>& made = device.impl().made[{fnv1a_of(spirv), own}];
     if (!made) {
         guarded(fmt::format("creating kernel '{}'", impl_->name), [&] {
             auto& gpu = *device.impl().device;
             const vk::raii::ShaderModule module(gpu, vk::ShaderModuleCreateInfo({}, spirv.size_bytes(), spirv.data()));
             std::vector<vk::SpecializationMapEntry> entries;
             std::vector<std::uint32_t> values;
-            for (const auto& [id, value] : specialization) {
+            for (const auto& [id, value] : own) {
                 entries.emplace_back(id, std::uint32_t(values.size() * sizeof(value)), sizeof(value));
                 values.push_back(value);
             }

@@ -192,7 +192,7 @@ int main(int argc, char** argv) {
     fmt::print(
         "Device ms an iteration of a room, {}x{}, {} paths, on {}; in the columns of passes: idle / on, in units of "
         "off.\n\n",
-        settings.size->width, settings.size->height, settings.photons, plain_device().info().driver);
+        settings.size->width, settings.size->height, *settings.photons, plain_device().info().driver);
     fmt::print("| feature | off | idle | on | on / off | eye | photon | gather |\n|---|---|---|---|---|---|---|---|\n");
     for (std::size_t i = 0; i < all.size(); ++i) {
         const auto ratio = [&](const char* pass) {

@@ -89,7 +89,7 @@ protected:
                 }
             }
         }
-        ASSERT_GT(entries.size(), rig.settings.photons);
+        ASSERT_GT(entries.size(), *rig.settings.photons);
         std::stable_sort(entries.begin(), entries.end(),
                          [](const Entry& a, const Entry& b) { return a.cell < b.cell; });
 

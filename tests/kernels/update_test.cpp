@@ -271,7 +271,7 @@ TEST_F(FilmSum, AddsTheEstimateWithTheRadiusBeforeTheUpdate) {
             double estimate = emissions[i].emission[c];
             if (diffuse) {
                 estimate += double(weights[i].weight[c]) * gathered[i].flux[c] /
-                            (std::numbers::pi * double(states[i].radius2) * rig.settings.photons);
+                            (std::numbers::pi * double(states[i].radius2) * *rig.settings.photons);
             }
             if (!finite) estimate = 0.0;
             // The estimate is a product of floats; the sum adds two roundings of the low part.

@@ -71,7 +71,7 @@ TEST_F(HardLights, OfNarrowCones) {
         const auto photons = rig.all<gpu::Photon>(Binding::sorted);
         const glm::dvec3 centre = rig.flat.frame.point(glm::dvec3(0.0));
         double sum = 0.0;
-        for (std::uint32_t i = 0; i < settings.photons; ++i) {
+        for (std::uint32_t i = 0; i < *settings.photons; ++i) {
             const glm::dvec3 offset = (glm::dvec3(photons[i].position) - centre) / rig.flat.frame.length(1.0);
             sum += offset.x * offset.x + offset.z * offset.z;
         }
@@ -79,7 +79,7 @@ TEST_F(HardLights, OfNarrowCones) {
         // 4, and r^2 = 2 v on the floor.
         const double want = cone * cone / 4.0;
         expect_error(fmt::format("mean square radius of a spot of {:g} rad", cone),
-                     std::abs(sum / settings.photons / want - 1.0), cone < 1e-5 ? 0.1 : 0.03);
+                     std::abs(sum / *settings.photons / want - 1.0), cone < 1e-5 ? 0.1 : 0.03);
     }
 }
 

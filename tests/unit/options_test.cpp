@@ -30,7 +30,7 @@ TEST(Options, DefaultsAreThePapers) {
     EXPECT_EQ(options.settings.estimator, "cppm");
     EXPECT_EQ(options.settings.iterations, 64u);
     EXPECT_FALSE(options.settings.seconds);
-    EXPECT_EQ(options.settings.photons, 65536u);
+    EXPECT_FALSE(options.settings.photons);
     EXPECT_FALSE(options.settings.size);
     EXPECT_EQ(options.settings.camera, "");
     EXPECT_EQ(options.settings.aperture, 0.0);
@@ -253,7 +253,7 @@ TEST(Options, ARaceIsOfThreeForAMinute) {
     for (const Entrant& entrant : options.race.entrants) {
         EXPECT_EQ(entrant.settings.seconds, 60.0);
         EXPECT_EQ(entrant.settings.iterations, unbounded_iterations);
-        EXPECT_EQ(entrant.settings.photons, 65536u);
+        EXPECT_FALSE(entrant.settings.photons);
     }
 }
 

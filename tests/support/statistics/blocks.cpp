@@ -83,7 +83,7 @@ TwoWays render_two_ways(const Scene& scene, const Settings& settings, std::uint3
 TwoWays render_two_ways_extrapolated(const Scene& scene, Settings settings, std::uint32_t parts,
                                      std::uint32_t samples) {
     TwoWays pictures = render_two_ways(scene, settings, parts, samples);
-    settings.photons *= 4;
+    settings.photons = 4 * settings.photons.value_or(usual_light_paths);
     ++settings.seed;
     const Pictures fine = render_photons(scene, settings, parts);
     for (std::uint32_t part = 0; part < parts; ++part) {
