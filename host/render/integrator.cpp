@@ -411,6 +411,20 @@ std::map<std::string, std::vector<float>> Integrator::aovs() const {
         add(std::string("Albedo.") + "RGB"[c], [&](State, Sums a) { return mean(a.albedo[c], a.albedo_low[c], a); });
         add(std::string("N.") + "XYZ"[c], [&](State, Sums a) { return mean(a.normal[c], a.normal_low[c], a); });
     }
+    const auto films = buffers_.at(Binding::film).download<gpu::Film>(pixels_);
+    const double iterations = std::max(1u, completed_);
+    for (int c = 0; c < 3; ++c) {
+        const auto layer = [&](std::uint64_t i, std::uint32_t l) {
+            return (double(sums[i].layer[l][c]) + double(sums[i].layer_low[l][c])) / iterations;
+        };
+        for (std::uint64_t i = 0; i < pixels_; ++i) {
+            const double all = (double(films[i].sum[c]) + double(films[i].low[c])) / iterations;
+            const double direct = layer(i, LAYER_DIRECT), caustic = layer(i, LAYER_CAUSTIC);
+            channels[std::string("direct.") + "RGB"[c]].push_back(float(direct));
+            channels[std::string("caustic.") + "RGB"[c]].push_back(float(caustic));
+            channels[std::string("rest.") + "RGB"[c]].push_back(float(all - direct - caustic));
+        }
+    }
     return channels;
 }
 

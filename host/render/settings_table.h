@@ -52,7 +52,7 @@ SETTING(max_depth, std::uint32_t, 64, "max-depth", picture, within(1u, 1024u), c
         "Bounces of a path (default: {})")
 
 SETTING(direct, std::string, direct_sampled, "direct", parameter,
-        words(Word{direct_sampled, "eye paths ask for it, a point of a light at every surface (next-event estimation)"},
+        words(Word{direct_sampled, "eye paths ask for it at every surface (next-event estimation)"},
               Word{direct_gathered, "photons bring it as all other light"}),
         name, "Light that comes straight from its source:{choices}\n(default: {})")
 
@@ -79,7 +79,8 @@ SETTING(sectors, std::uint32_t, 6, "sectors", parameter, one_of(4u, 6u, 8u, 12u)
 
 SETTING(aovs, bool, false, "aovs", channels, any(), flag,
         "Add channels to the EXR: ppm.radius, ppm.photons, ppm.batch, ppm.rejections, ppm.statistic,\n"
-        "ppm.iterations, and Z, Albedo, N of the first surfaces")
+        "ppm.iterations; Z, Albedo, N of the first surfaces; and direct, caustic and rest, the layers of\n"
+        "the picture")
 
 // The half of a reference that is caustics alone (study/reference.h): the starting radius in footprints of the pixel, a
 // quarter of it at a photon's first rough surface.

@@ -1,10 +1,11 @@
-// Who brings direct light, light that has met nothing since it left its source. Where it is asked for (FEATURE_DIRECT)
-// eye paths bring it at every surface with a lobe of width above 0: they ask for a point of the lights (next-event
-// estimation), and what a rough lobe meets that was followed is weighed against that by the balance heuristic
-// (multiple importance sampling; Veach and Guibas 1995). Photons bring all other light, and that of emitting surfaces
-// which are so close, or of which so little is asked for, that a sample would seldom find them and then weigh much:
-// where the density of asking is below LEAST_DENSITY. That is a rule on the two points alone, so that each light is
-// brought once. Elsewhere (FEATURE_DIRECT is not set) photons bring direct light too. Pure functions.
+// Who brings direct light: light that has met nothing since it left its source, or panes alone, thin smooth glass,
+// which lets it go straight on. Where it is asked for (FEATURE_DIRECT) eye paths bring it at every surface with a lobe
+// of width above 0: they ask for a point of the lights (next-event estimation), and what a rough lobe meets that was
+// followed is weighed against that by the balance heuristic (multiple importance sampling; Veach and Guibas 1995).
+// Photons bring all other light, and that of emitting surfaces which are so close, or of which so little is asked for,
+// that a sample would seldom find them and then weigh much: where the density of asking is below LEAST_DENSITY. That is
+// a rule on the two points alone, so that each light is brought once. Elsewhere (FEATURE_DIRECT is not set) photons
+// bring direct light too. Pure functions.
 #ifndef DIRECT_GLSL
 #define DIRECT_GLSL
 

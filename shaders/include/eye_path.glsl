@@ -12,6 +12,7 @@
 #include "include/environment.glsl"
 #include "include/frame.glsl"
 #include "include/hits.glsl"
+#include "include/layers.glsl"
 #include "include/light.glsl"
 #include "include/light_ray.glsl"
 #include "include/path.glsl"
@@ -21,7 +22,6 @@
 #include "include/surface.glsl"
 #include "include/traverse.glsl"
 
-AOVS(UPDATES)
 EYE_PATHS(UPDATES)
 LIGHT_RAYS(UPDATES)
 
@@ -65,7 +65,7 @@ EyePath begin_eye_path(uint pixel) {
     EyePath path;
     path.pixel = pixel;
     path.at = EyeState(vec3(0.0), PATH_OUTSIDE | PATH_STRAIGHT, vec3(0.0), 0.0, vec3(1.0), 0.0, vec3(0.0), 0.0,
-                       HIT_UNFINISHED, vec3(1.0));
+                       HIT_UNFINISHED, vec3[](vec3(0.0), vec3(0.0)), vec3(1.0));
     path.light_rays = no_light_rays();
     path.position = HitPosition(vec3(0.0), HIT_NONE);
     path.weight = HitWeight(vec3(0.0), 0u);
@@ -99,6 +99,7 @@ void leave_unfinished(inout EyePath path, bool fresh) {
 }
 
 void store(EyePath path) {
+    if (HAS_AOVS && path.position.state != HIT_UNFINISHED) add_layers(path.pixel, path.at.layer);
     if (path.position.state == HIT_UNFINISHED) {
         eye_paths[path.pixel] = path.at;
         for (uint g = 0u; EYE_PATHS_ASK && g < GROUPS; ++g) {
@@ -111,6 +112,23 @@ void store(EyePath path) {
 }
 
 // ---- meet ----
+
+// The path has found light.
+void find(inout EyePath path, vec3 light, uint layer) {
+    path.at.emission += light;
+    if (HAS_AOVS && layer == LAYER_DIRECT) path.at.layer[LAYER_DIRECT] += light;
+    if (HAS_AOVS && layer == LAYER_CAUSTIC) path.at.layer[LAYER_CAUSTIC] += light;
+}
+
+// That of light which the path meets: it has come, from there to the surface seen, by what the path has gone.
+uint layer_of_met(uint flags) {
+    if ((flags & PATH_STRAIGHT) != 0u) return LAYER_DIRECT;
+    if ((flags & PATH_ROUGH_TWICE) != 0u) return LAYER_REST;
+    return (flags & PATH_CAUSTIC) != 0u ? LAYER_CAUSTIC : LAYER_DIRECT;
+}
+
+// That of light which arrives at a vertex.
+uint layer_of_asked(uint flags) { return (flags & PATH_STRAIGHT) != 0u ? LAYER_DIRECT : LAYER_REST; }
 
 // The weight of light that a ray meets and that could be asked for with `density`: the balance heuristic. followed: the
 // density with which rough lobes gave the ray its direction; 0: none did, and nothing else finds this light.
@@ -139,7 +157,7 @@ void meet_nothing(inout EyePath path) {
         vec3 met = environment_radiance(path.at.direction);
         if (met != vec3(0.0)) {
             float density = EYE_PATHS_ASK ? environment_density(path.at.direction) : 0.0;
-            path.at.emission += throughput_of_met(path, density, true) * met;
+            find(path, throughput_of_met(path, density, true) * met, layer_of_met(path.at.flags));
         }
     }
 }
@@ -181,7 +199,7 @@ void describe(inout EyePath path, Vertex v) {
 // What emits no photons must not be seen by rough lobes: photons would have to bring their share of it.
 void meet_unlit(inout EyePath path, Vertex v) {
     if ((path.at.flags & PATH_STRAIGHT) != 0u && sees_light(path.at.flags)) {
-        path.at.emission += path.at.throughput * v.material.color;
+        find(path, path.at.throughput * v.material.color, LAYER_DIRECT);
     }
 }
 
@@ -190,7 +208,7 @@ void meet_emission(inout EyePath path, Vertex v) {
         vec3 met = v.material.emission;
         if (met != vec3(0.0)) {
             float density = EYE_PATHS_ASK ? met_density(v.material, v.surface, path.at.direction, path.at.leg) : 0.0;
-            path.at.emission += throughput_of_met(path, density, asks_emitter(density)) * met;
+            find(path, throughput_of_met(path, density, asks_emitter(density)) * met, layer_of_met(path.at.flags));
         }
     }
 }
@@ -240,20 +258,21 @@ void ask(inout EyePath path, Vertex v) {
             LightSample light = sample_light(group, pair, u.xy, v.surface.position);
             vec3 brings = light_from(path, v, light) / float(group.candidates);
             if (!finite(brings)) path.at.emission += brings;  // the update pass is to hear of it
-            take_one(path.light_rays.of[g], ray_to(light, brings, v.surface), u.w);
+            take_one(path.light_rays.of[g], ray_to(light, brings, layer_of_asked(path.at.flags), v.surface), u.w);
         }
         bits = bits.zwyx;  // the seeds of the next group
     }
 }
 
-// Goes on with the ray to a light that has been traced, to beyond a surface that is partly there or to its end.
+// Goes on with the ray to a light that has been traced, to behind a surface or to its end.
 void go_on_with_light_ray(inout EyePath path, uint found, Hit hit) {
     LightRay ray = path.light_rays.of[0];
     bool reaches = reaches_light(ray, found, hit);
-    if (reaches) path.at.emission += ray.light;
-    if (HAS_ALPHA && !reaches) {
+    if (reaches) find(path, ray.light, ray.layer);
+    if (LIGHT_RAYS_PASS && !reaches) {
         Surface surface = surface_at(hit, ray.direction);
-        pass_surface(ray, surface, hit.t, coverage_of(material_at(hit, ray.direction, surface)));
+        SurfaceMaterial material = material_at(hit, ray.direction, surface);
+        pass_surface(ray, surface, hit.t, passes_straight(surface, material, ray.direction));
         path.light_rays.of[0] = ray;
     } else {
         path.light_rays.of[0].distance = 0.0;
@@ -262,12 +281,18 @@ void go_on_with_light_ray(inout EyePath path, uint found, Hit hit) {
 
 // ---- choose, follow, gather ----
 
+// True where the lobe goes straight on through a pane, which rays to lights pass too.
+bool passes_pane(Bsdf bsdf, uint lobe) { return !HAS_SPLIT && lobe == LOBE_TRANSMISSION && is_pane(bsdf); }
+
 // A lobe, or LOBE_DIFFUSE to gather, by the probabilities of v.lobes.
 uint choose(inout EyePath path, Vertex v) {
     float choice = stratified(params.seed, launch.iteration, path.pixel, v.depth + FIRST_BOUNCE_DIMENSION);
     float inverse_probability;
     uint lobe = choose_lobe(v.lobes, choice, inverse_probability);
-    if (lobe != LOBE_NONE) path.at.throughput *= inverse_probability;
+    if (lobe != LOBE_NONE) {
+        path.at.throughput *= inverse_probability;
+        if (passes_pane(v.bsdf, lobe)) path.at.direct *= inverse_probability;
+    }
     return lobe;
 }
 
@@ -288,10 +313,15 @@ void gather(inout EyePath path, Vertex v) {
 // Follows a lobe to the next ray; false where it sends nothing on.
 bool follow(inout EyePath path, Vertex v, uint lobe) {
     float density;
-    path.at.throughput *= sample_lobe(lobe, v.bsdf, v.surface, v.u.xy, true, path.at.direction, density);
-    if (HAS_ROUGH) {
+    vec3 weight = sample_lobe(lobe, v.bsdf, v.surface, v.u.xy, true, path.at.direction, density);
+    path.at.throughput *= weight;
+    if (HAS_ROUGH && passes_pane(v.bsdf, lobe)) {
+        path.at.direct *= weight;  // as if nothing had been met
+    } else if (HAS_ROUGH) {
         path.at.direct = path.at.throughput;
         path.at.throughput *= followed_weight(density, dot(path.at.direction, normal_of(lobe, v.surface)));
+        bool again = density != DELTA && (path.at.flags & PATH_STRAIGHT) == 0u;
+        if (HAS_AOVS && again) path.at.flags |= PATH_ROUGH_TWICE;
         path.at.flags = leave_lobe(path.at.flags, density);
         // A clearcoat's light from below the horizon of its base is not asked for: rough_bsdf leaves it out.
         float side = dot(path.at.direction, v.surface.normal) * dot(path.at.direction, v.surface.geometric);

@@ -1,5 +1,5 @@
-// Rays that ask for a light (next-event estimation). Surfaces that are partly there let that part pass, all others stop
-// them, glass too. Pure functions.
+// Rays that ask for a light (next-event estimation). Surfaces that are partly there let that part pass, panes what goes
+// straight on through them, but where light is split; all others stop them, glass too. Pure functions.
 #ifndef LIGHT_RAY_GLSL
 #define LIGHT_RAY_GLSL
 
@@ -11,9 +11,12 @@
 #include "include/surface.glsl"
 #include "include/traverse.glsl"
 
+// Rays to lights may go on behind a surface.
+const bool LIGHT_RAYS_PASS = (FEATURES & (FEATURE_ALPHA | FEATURE_THIN)) != 0u;
+
 const float POSITION_ERROR = 1e-6;  // frame units, as the smallest radius
 
-LightRay no_light_ray() { return LightRay(vec3(0.0), 0.0, vec3(0.0), NO_TRIANGLE, vec3(0.0)); }
+LightRay no_light_ray() { return LightRay(vec3(0.0), 0.0, vec3(0.0), NO_TRIANGLE, vec3(0.0), LAYER_REST); }
 
 LightRays no_light_rays() {
     LightRays rays;
@@ -39,12 +42,12 @@ vec3 transmittance_to(LightSample light, uint flags, Bsdf bsdf, Surface surface)
     return medium == PATH_NO_MEDIUM ? vec3(1.0) : exp(-min(light.distance * absorption_of(medium), vec3(100.0)));
 }
 
-// From the surface to the light. contribution: what it adds to the picture where nothing is in between.
-LightRay ray_to(LightSample light, vec3 contribution, Surface surface) {
+// From the surface to the light. contribution: what it adds to the picture where nothing is in between, to that layer.
+LightRay ray_to(LightSample light, vec3 contribution, uint layer, Surface surface) {
     vec3 origin = leave(surface, light.direction);
     float distance = light.distance - dot(origin - surface.position, light.direction);
     if (!any(greaterThan(contribution, vec3(0.0)))) distance = 0.0;
-    return LightRay(origin, distance, light.direction, light.triangle, contribution);
+    return LightRay(origin, distance, light.direction, light.triangle, contribution, layer);
 }
 
 // One of two rays in proportion to what they add, for the sum of both; u in [0, 1).
@@ -62,11 +65,23 @@ bool reaches_light(LightRay ray, uint found, Hit hit) {
     return found == TRACE_MISS || hit.triangle == ray.triangle || hit.t >= ray.distance - POSITION_ERROR;
 }
 
-// The ray has met a surface of which the share `coverage` is there.
-void pass_surface(inout LightRay ray, Surface surface, float t, float coverage) {
-    ray.light *= 1.0 - coverage;
+// What of light passes a surface to go straight on.
+vec3 passes_straight(Surface surface, SurfaceMaterial material, vec3 direction) {
+    float coverage = HAS_ALPHA ? coverage_of(material) : 1.0;
+    vec3 passes = vec3(1.0 - coverage);
+    if (HAS_THIN) {
+        Bsdf b = bsdf_of(material, material.ior, surface.front);
+        bool unlit = HAS_UNLIT && has(material, SURFACE_UNLIT);
+        if (is_pane(b) && !unlit) passes += coverage * pane_transmittance(b, surface, -direction);
+    }
+    return passes;
+}
+
+// The ray has met a surface, `t` away, and goes on behind it with what passes.
+void pass_surface(inout LightRay ray, Surface surface, float t, vec3 passes) {
+    ray.light *= passes;
     ray.origin = leave(surface, ray.direction);
-    ray.distance = coverage < 1.0 ? max(1e-30, ray.distance - t) : 0.0;
+    ray.distance = any(greaterThan(passes, vec3(0.0))) ? max(1e-30, ray.distance - t) : 0.0;
 }
 
 #endif

@@ -23,4 +23,12 @@ vec3 set_brings_all(vec3 power, bool all) { return vec3(with_sign(power.r, all),
 bool is_first_rough(PhotonFlux flux) { return has_sign(flux.power.g); }
 vec3 set_first_rough(vec3 power, bool first) { return vec3(power.r, with_sign(power.g, first), power.b); }
 
+// Where there are further channels: its layer, LAYER_*.
+uint layer_of(PhotonFlux flux) {
+    return has_sign(flux.power.g) ? LAYER_CAUSTIC : has_sign(flux.power.b) ? LAYER_DIRECT : LAYER_REST;
+}
+vec3 set_layer(vec3 power, uint layer) {
+    return vec3(power.r, with_sign(power.g, layer == LAYER_CAUSTIC), with_sign(power.b, layer == LAYER_DIRECT));
+}
+
 #endif

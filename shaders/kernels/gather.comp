@@ -1,7 +1,8 @@
 #version 460
 // One invocation a pixel: sums the photons in its disc with the radius in force before this iteration's photons were
 // looked at, and bins them for the estimator. Reads hits, pixels, grid, sorted photons and their
-// flux, in glossy scenes hit_surface and the scene; writes gathered, tally or moments, cursors.
+// flux, in glossy scenes hit_surface and the scene; writes gathered, tally or moments, cursors, aovs where
+// asked for.
 // O(photons in the cells that the disc touches). Fails by running out of steps: goes on next round.
 // In glossy scenes every photon is weighed by the BSDF for its direction, made from the surface of the hit again.
 // Acceptance: |y - x| < R strictly (appm looks further for its derivative), and the photon's geometric normal agrees
@@ -11,6 +12,7 @@
 #include "include/bsdf.glsl"
 #include "include/frame.glsl"
 #include "include/hits.glsl"
+#include "include/layers.glsl"
 #include "include/path.glsl"
 #include "include/photon_flux.glsl"
 #include "include/pixels.glsl"
@@ -71,6 +73,8 @@ Receiver receiver_of(uint pixel, HitPosition hit) {
     return r;
 }
 
+vec3 layer_flux[LAYERS] = vec3[](vec3(0.0), vec3(0.0));  // parts of the sum, where there are further channels
+
 // Weighs an accepted photon: adds it to the sum and to what the estimator keeps.
 void weigh(Receiver r, uint index, inout Gathered sum) {
     Photon photon = sorted_at(index);
@@ -90,7 +94,12 @@ void weigh(Receiver r, uint index, inout Gathered sum) {
     }
     bool inside = squared < r.radius2;
     float q = squared * r.inverse_radius * r.inverse_radius;
-    add_corrected(sum.flux, sum.excess, inside ? power * photon_weight(q, is_first_rough(flux)) : vec3(0.0));
+    vec3 counted = inside ? power * photon_weight(q, is_first_rough(flux)) : vec3(0.0);
+    add_corrected(sum.flux, sum.excess, counted);
+    if (HAS_AOVS) {
+        uint layer = layer_of(flux);
+        if (layer < LAYERS) layer_flux[layer] += counted;
+    }
     sum.count += inside ? 1u : 0u;
     record(r.pixel, Accepted(vec2(dot(offset, r.tangent), dot(offset, r.bitangent)), q, power, index), inside);
 }
@@ -175,6 +184,12 @@ void main() {
         weigh_queue(r, queued, sum, steps);
     }
     flush(pixel);
+    if (HAS_AOVS) {
+        // As the update pass, of the photons of this round.
+        vec3 factor = hit_weight_at(pixel).weight * (params.inverse_paths / (PI * r.radius2));
+        for (uint i = 0u; i < LAYERS; ++i) layer_flux[i] *= factor;
+        add_layers(pixel, layer_flux);
+    }
     if (walked(cursor, box)) {
         cursor.cell.x = CURSOR_DONE;
         sum.tested = max(sum.count, per_disc(sum.tested, r.radius2, box.level));

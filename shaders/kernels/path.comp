@@ -68,7 +68,7 @@ void ask_for_light(inout TraceState state, Bsdf bsdf, Surface surface, LobeWeigh
             factor *= power_heuristic(light.density, scatter_density(bsdf, surface, lobes, wo, light.direction));
         }
         factor *= transmittance_to(light, state.flags, bsdf, surface);
-        state.light_rays.of[g] = ray_to(light, state.throughput * factor, surface);
+        state.light_rays.of[g] = ray_to(light, state.throughput * factor, LAYER_REST, surface);
     }
 }
 
@@ -189,7 +189,7 @@ void main() {
             SurfaceMaterial material = material_at(hit, direction, surface);
             float coverage = HAS_ALPHA ? coverage_of(material) : 1.0;
             if (shadow) {
-                pass_surface(light_ray, surface, hit.t, coverage);
+                pass_surface(light_ray, surface, hit.t, vec3(1.0 - coverage));
                 state.light_rays.of[0] = light_ray;
             } else {
                 ++state.flags;

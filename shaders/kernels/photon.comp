@@ -49,6 +49,12 @@ void begin_light_path(inout PathState state) {
     state.power0 = largest(state.power);
 }
 
+// What the photon has met.
+uint layer_of(uint flags) {
+    if ((flags & PATH_DIRECT) != 0u) return LAYER_DIRECT;
+    return (flags & PATH_SCATTERED) != 0u ? LAYER_REST : LAYER_CAUSTIC;
+}
+
 // Stores a photon at the surface, in the lane's next slot where there is one left.
 void store_photon(inout PathState state, uint slot, Surface surface) {
     if (state.stored < params.photon_capacity) {
@@ -59,6 +65,8 @@ void store_photon(inout PathState state, uint slot, Surface surface) {
         if (HAS_ROUGH && HAS_PUNCTUAL_LIGHTS) power = set_brings_all(power, all);
         if (HAS_SPLIT) power = set_brings_all(power, all);
         if (HAS_SPLIT) power = set_first_rough(power, (state.flags & PATH_SCATTERED) == 0u);
+        // Never both: a reference has no further channels.
+        if (HAS_AOVS) power = set_layer(power, layer_of(state.flags));
         photon_flux[slot + state.stored] = PhotonFlux(power, pack_direction(-state.direction));
     }
     ++state.stored;
@@ -75,9 +83,12 @@ bool scatter(inout PathState state, Bsdf bsdf, Surface surface, vec4 u) {
     float density;
     vec3 weight = sample_lobe(lobe, bsdf, surface, u.xy, false, state.direction, density);
     state.power *= weight * inverse_probability;
+    // What goes straight on through a pane has met nothing.
+    bool passes = !HAS_SPLIT && lobe == LOBE_TRANSMISSION && is_pane(bsdf);
     bool lit_near = (state.flags & PATH_DIRECT) != 0u && state.near > 0.0;
-    state.flags &= ~PATH_DIRECT;
+    if (!passes) state.flags &= ~PATH_DIRECT;
     if (density != DELTA) state.flags &= ~PATH_STRAIGHT;
+    if (HAS_AOVS && density != DELTA) state.flags |= PATH_SCATTERED;
     state.flags = split_photon(state.flags, density, lit_near);
     alive = alive && !split_ends(state.flags);
     if (HAS_SMOOTH && density != DELTA) state.power *= shading_correction(surface, before, state.direction);

@@ -315,16 +315,25 @@ RECORD(HitSurface)
                                 // light is split, a photon also since a surface near its lamp
 #define PATH_DISPERSED 0x1000u  // its wavelength is drawn
 #define PATH_DIRECT 0x2000u     // a photon that has met nothing yet since it left its light
-// Where light is split, not of eye paths: a photon since it met another lobe than a delta, but for the surface near its
-// lamp; a path of the path tracer whose last lobe was no delta, and one before it neither.
+// Not of eye paths. Where light is split or in layers: a photon since it met another lobe than a delta, but for the
+// surface near its lamp; a path of the path tracer whose last lobe was no delta, and one before it neither.
 #define PATH_SCATTERED 0x4000u
 // Of eye paths alone, which have no use for PATH_SCATTERED: no bit of the word is left. It has met a surface that is
 // there.
 #define PATH_SEEN PATH_SCATTERED
+// Of eye paths alone, which have no use for PATH_DIRECT: it has followed more than one rough lobe.
+#define PATH_ROUGH_TWICE PATH_DIRECT
 #define PATH_CAUSTIC 0x8000u    // a photon that left its light by way of a delta lobe, or of a surface near a lamp; an
                                 // eye path whose last lobe was a delta and one before was not
 #define PATH_MEDIUM_SHIFT 16u
 #define PATH_NO_MEDIUM 0xffffu  // also the largest number of materials
+
+// What light has met between its source and the surface that is seen: the first that is not perfectly smooth. What is
+// seen to emit is direct light too. LAYER_DIRECT and LAYER_CAUSTIC index Aovs::layer.
+#define LAYER_DIRECT 0u   // nothing
+#define LAYER_CAUSTIC 1u  // mirrors and smooth glass alone
+#define LAYER_REST 2u     // other surfaces
+#define LAYERS 2u         // that are summed: the picture less these is the rest
 
 // A ray that asks whether a light is seen (next-event estimation).
 struct LightRay {
@@ -333,6 +342,7 @@ struct LightRay {
     vec3 direction;
     uint triangle;     // of the light, which the ray may meet; NO_TRIANGLE: a light of no area
     vec3 light;        // what it adds to the picture where nothing is in between
+    uint layer;        // LAYER_*: of which that is
 };
 #define NO_TRIANGLE 0xffffffffu
 
@@ -352,6 +362,7 @@ struct EyeState {
     vec3 emission;         // throughput * radiance of what it has met so far
     float distance;        // length since the eye
     uint end;              // state of the hit that it has ended in; HIT_UNFINISHED: it goes on
+    vec3 layer[LAYERS];    // of the emission, where there are further channels
     vec3 direct;           // what the throughput is for direct light that the next ray meets: include/direct.glsl
 };
 
@@ -399,6 +410,8 @@ struct Aovs {
     vec3 albedo_low;
     vec3 normal_low;
     float depth_low;
+    vec3 layer[LAYERS];      // of radiance, sums over all iterations
+    vec3 layer_low[LAYERS];
 };
 
 // Sum of radiance in two floats: sum + low is the estimate times the iterations.
@@ -567,7 +580,7 @@ static_assert(sizeof(AskedLight) == 16);
 static_assert(sizeof(Photon) == 16 && sizeof(PhotonFlux) == 16);
 static_assert(sizeof(HitPosition) == 16 && sizeof(HitWeight) == 16 && sizeof(HitEmission) == 16 &&
               sizeof(HitSurface) == 16);
-static_assert(sizeof(Gathered) == 32 && sizeof(PixelState) == 48 && sizeof(Film) == 24 && sizeof(LightRay) == 44);
+static_assert(sizeof(Gathered) == 32 && sizeof(PixelState) == 48 && sizeof(Film) == 24 && sizeof(LightRay) == 48);
 static_assert(sizeof(Launch) <= 128);
 }  // namespace vkcppm::gpu
 namespace vkcppm {

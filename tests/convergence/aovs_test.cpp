@@ -22,7 +22,7 @@ TEST_F(Aovs, OfALitPlane) {
     Rig rig(project_scene("point_plane"), settings);
     rig.integrator.run(iterations);
     const auto channels = rig.integrator.aovs();
-    EXPECT_EQ(channels.size(), 13u);
+    EXPECT_EQ(channels.size(), 22u);
 
     const Camera& camera = rig.scene.cameras[0];
     const glm::dvec3 axis = -glm::dvec3(camera.to_world[2]);

@@ -1,6 +1,7 @@
 // Every scene of scenes/ with an <name>.expect.json reaches the value that its formula gives.
 
 #include <filesystem>
+#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -29,16 +30,21 @@ std::vector<std::string> expectations() {
     return names;
 }
 
-class ClosedForm : public GpuTest, public testing::WithParamInterface<std::string> {};
+/// A scene, and who brings direct light.
+using NameAndWay = std::tuple<std::string, const char*>;
+
+class ClosedForm : public GpuTest, public testing::WithParamInterface<NameAndWay> {};
 
 TEST_P(ClosedForm, MeanRadianceOfEveryRegion) {
-    const nlohmann::json expected = expectation_of(GetParam());
+    const auto& [name, direct] = GetParam();
+    const nlohmann::json expected = expectation_of(name);
     const Scene scene = load_gltf(scenes / expected["scene"].get<std::string>());
     EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.front();
     Settings settings;
     settings.size = Extent{expected["size"][0], expected["size"][1]};
     settings.iterations = expected["iterations"];
-    settings.photons = expected["photons"];
+    settings.photons = expected["photons"].get<std::uint32_t>();
+    settings.direct = direct;
     const Rendering rendering = render(scene, settings, device(), [](const Progress&) { return true; });
     EXPECT_TRUE(rendering.warnings.empty()) << rendering.warnings.front();
 
@@ -62,8 +68,10 @@ TEST_P(ClosedForm, MeanRadianceOfEveryRegion) {
     if (HasFailure()) leave_pictures(rendering.image, wanted);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, ClosedForm, testing::ValuesIn(expectations()),
-                         [](const auto& info) { return info.param; });
+INSTANTIATE_TEST_SUITE_P(Scenes, ClosedForm,
+                         testing::Combine(testing::ValuesIn(expectations()),
+                                          testing::Values(direct_sampled, direct_gathered)),
+                         [](const auto& info) { return std::get<0>(info.param) + "_" + std::get<1>(info.param); });
 
 }  // namespace
 }  // namespace vkcppm::test

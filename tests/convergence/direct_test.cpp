@@ -1,6 +1,7 @@
 // Direct light that eye paths ask for: right to their noise where nothing else lights a plane, and the same picture as
 // where photons bring it.
 
+#include <numbers>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -12,7 +13,9 @@
 #include "support/device/rig.h"
 #include "support/files/evidence.h"
 #include "support/scenes/expectation.h"
+#include "support/scenes/materials.h"
 #include "support/scenes/scenes.h"
+#include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {
@@ -46,6 +49,40 @@ TEST_P(LitPlane, IsRightToTheNoiseOfItsSamples) {
         }
     }
     if (HasFailure()) leave_pictures(one, other, "two seeds");
+}
+
+// A sun straight down through a pane of index 1.5 onto a plane: rho / pi E tint (1 - F), F = 0.04, at every pixel, and
+// it is in the direct layer whoever brings it. By photons to their noise.
+TEST(Panes, LetDirectLightPass) {
+    const glm::vec3 rho(0.5f, 0.4f, 0.3f), tint(0.9f, 0.8f, 0.7f), irradiance(2.0f, 3.0f, 4.0f);
+    Scene scene;
+    add_quad(scene, {-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, add_material(scene, lambert(rho)));
+    Material pane = glass(1.5f);
+    pane.thickness = 0.0f;
+    pane.base_color = tint;
+    add_quad(scene, {-2, 1, -2}, {0, 0, 4}, {4, 0, 0}, add_material(scene, pane));
+    add_directional_light(scene, {0, -1, 0}, irradiance);
+    add_camera(scene, {0, 0.9, 0.3}, {0, 0, 0}, 0.6);
+    for (const char* direct : {direct_sampled, direct_gathered}) {
+        Settings settings;
+        settings.size = Extent{16, 16};
+        settings.photons = 65536;
+        settings.direct = direct;
+        settings.aovs = true;
+        Rig rig(scene, settings, plain_device());
+        rig.integrator.run(16);
+        const auto channels = rig.integrator.aovs();
+        const bool sampled = std::string(direct) == direct_sampled;
+        for (int c = 0; c < 3; ++c) {
+            const double want = rho[c] / std::numbers::pi * irradiance[c] * tint[c] * 0.96;
+            double sum = 0.0;
+            for (const float value : channels.at(std::string("direct.") + "RGB"[c])) {
+                if (sampled) EXPECT_NEAR(value, want, 1e-5 * want) << direct << ", channel " << c;
+                sum += value;
+            }
+            EXPECT_NEAR(sum / double(rig.pixels()), want, 0.01 * want) << direct << ", channel " << c;
+        }
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, LitPlane,

@@ -25,7 +25,12 @@ TEST_P(Materials, AgreeWithPathTracing) {
     settings.iterations = 12;
     settings.photons = 32768;
     GetParam().change(scene, settings);
-    expect_blocks_agree(render_two_ways(scene, settings, 12, 64), {.side = 8, .bias = 0.012});
+    TwoWays pictures = render_two_ways(scene, settings, 12, 64);
+    expect_blocks_agree(pictures, {.side = 8, .bias = 0.012});
+    settings.direct = direct_gathered;
+    SCOPED_TRACE(settings.direct);
+    pictures.photons = render_photons(scene, settings, 12);
+    expect_blocks_agree(pictures, {.side = 8, .bias = 0.012});
 }
 
 std::string name_of(const testing::TestParamInfo<Case>& info) { return info.param.name; }

@@ -29,6 +29,7 @@ void bump(inout uvec4 a[GRID_LEVELS]) { for (int i = 0; i < GRID_LEVELS; ++i) bu
 void bump(inout uint a[TEXTURE_COUNT]) { for (int i = 0; i < TEXTURE_COUNT; ++i) a[i] += ++ordinal; }
 void bump(inout uint a[RADIUS_BINS]) { for (int i = 0; i < RADIUS_BINS; ++i) a[i] += ++ordinal; }
 void bump(inout float a[MAX_RINGS]) { for (int i = 0; i < MAX_RINGS; ++i) a[i] += float(++ordinal); }
+void bump(inout vec3 a[LAYERS]) { for (int i = 0; i < LAYERS; ++i) bump(a[i]); }
 void bump(inout vec2 a[3]) { for (int i = 0; i < 3; ++i) bump(a[i]); }
 void bump(inout vec2 a[MAX_SECTORS / 2]) { for (int i = 0; i < MAX_SECTORS / 2; ++i) bump(a[i]); }
 void bump(inout vec2 a[MAX_SECTORS]) { for (int i = 0; i < MAX_SECTORS; ++i) bump(a[i]); }

@@ -17,7 +17,7 @@
     X(triangle) X(textured)
 #define MEMBERS_ASKED_GROUP X(first) X(count) X(candidates) X(power)
 #define MEMBERS_ASKED_LIGHT X(light) X(keep) X(alias_light) X(unused)
-#define MEMBERS_LIGHT_RAY X(origin) X(distance) X(direction) X(triangle) X(light)
+#define MEMBERS_LIGHT_RAY X(origin) X(distance) X(direction) X(triangle) X(light) X(layer)
 #define MEMBERS_LIGHT_RAYS X(of)
 #define MEMBERS_PHOTON X(position) X(normal)
 #define MEMBERS_PHOTON_FLUX X(power) X(direction)
@@ -28,7 +28,7 @@
 #define MEMBERS_GATHERED X(flux) X(count) X(excess) X(tested)
 #define MEMBERS_PIXEL_STATE X(radius2) X(seeded) X(count) X(total) X(batch) X(rejections) \
     X(photons) X(seen) X(statistic) X(radius2_low) X(count_low) X(unused)
-#define MEMBERS_AOVS X(albedo) X(normal) X(depth) X(hits) X(albedo_low) X(normal_low) X(depth_low)
+#define MEMBERS_AOVS X(albedo) X(normal) X(depth) X(hits) X(albedo_low) X(normal_low) X(depth_low) X(layer) X(layer_low)
 #define MEMBERS_FILM X(sum) X(low)
 #define MEMBERS_PATH_STATE X(origin) X(path) X(direction) X(flags) X(power) X(stored) X(power0) X(begin) X(next) \
     X(near)
@@ -47,7 +47,7 @@
     X(inverse_paths) X(flux_unit) X(alpha) X(k) X(beta) \
     X(cells) X(grid_levels) X(most_levels) X(sort_lanes) X(scan_blocks) X(threshold) X(sector_edge) X(sector_centre)
 #define MEMBERS_EYE_STATE X(origin) X(flags) X(direction) X(followed) X(throughput) X(leg) X(emission) X(distance) \
-    X(end) X(direct)
+    X(end) X(layer) X(direct)
 #define MEMBERS_SEARCH_STATE X(largest) X(largest_index) X(radius) X(kept)
 #define MEMBERS_LAUNCH X(iteration) X(round) X(last_round) X(paths) X(search_group) X(level) X(scan_first) \
     X(scan_count) X(digit_shift) X(reads_b) X(plans_next) X(argument) X(items)

@@ -9,6 +9,15 @@ float transmission_width(Bsdf b) { return b.alpha; }
 
 vec3 transmission_normal(Surface surface) { return surface.normal; }
 
+// True of a thin wall that lets light go straight on, as if it met nothing (include/direct.glsl).
+bool is_pane(Bsdf b) { return HAS_THIN && b.thin && b.glass > 0.0 && !is_rough(b.alpha); }
+
+// What goes straight on through a pane.
+vec3 pane_transmittance(Bsdf b, Surface surface, vec3 wo) {
+    float transmittance = facet_transmittance(b, min(1.0, dot(surface.normal, wo)));
+    return b.transmission * (transmittance * below_clearcoat(b, coat_cosine(surface, wo)));
+}
+
 // The facets of rough glass turn from n to wo: some transmit where n would reflect all.
 float transmission_weight(Bsdf b, Surface surface, vec3 wo) {
     float transmittance = facet_transmittance(b, min(1.0, dot(surface.normal, wo)));

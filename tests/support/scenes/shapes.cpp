@@ -129,6 +129,14 @@ void add_spot_light(Scene& scene, const glm::dvec3& position, const glm::dvec3& 
     scene.lights.push_back(light);
 }
 
+void add_directional_light(Scene& scene, const glm::dvec3& direction, const glm::vec3& irradiance) {
+    PunctualLight light;
+    light.kind = PunctualLight::Kind::directional;
+    light.direction = direction;
+    light.intensity = irradiance;
+    scene.lights.push_back(light);
+}
+
 void add_camera(Scene& scene, const glm::dvec3& eye, const glm::dvec3& target, double yfov) {
     Camera camera;
     const glm::dvec3 back = glm::normalize(eye - target);

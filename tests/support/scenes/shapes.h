@@ -34,6 +34,9 @@ void add_point_light(Scene& scene, const glm::dvec3& position, const glm::vec3& 
 void add_spot_light(Scene& scene, const glm::dvec3& position, const glm::dvec3& direction, double outer_cone,
                     const glm::vec3& intensity);
 
+/// direction: unit; irradiance across it: W m^-2.
+void add_directional_light(Scene& scene, const glm::dvec3& direction, const glm::vec3& irradiance);
+
 void add_camera(Scene& scene, const glm::dvec3& eye, const glm::dvec3& target, double yfov);
 
 /// A closed room [0, 2]^3: a lamp under the ceiling, a point and a spot light, a glass sphere, a diffuse sphere with

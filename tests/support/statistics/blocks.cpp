@@ -44,8 +44,19 @@ double p_value(double difference, double allowed, double v1, double v2, double n
     return 2.0 * cdf(complement(boost::math::students_t(freedom), beyond / std::sqrt(v1 + v2)));
 }
 
-/// One render's iterations in `parts` of equal length, the mean over each. Photons of a part are its own, and whatever
-/// radius earlier ones have left, its estimate is as good as theirs: parts are uncorrelated.
+}  // namespace
+
+oracle::PathTracerSettings oracle_settings(const Settings& settings, std::uint32_t samples) {
+    oracle::PathTracerSettings oracle;
+    oracle.size = *settings.size;
+    oracle.samples = samples;
+    oracle.seed = settings.seed;
+    oracle.max_depth = settings.max_depth;
+    oracle.aperture = settings.aperture;
+    oracle.focus_distance = settings.focus_distance.value_or(1.0);
+    return oracle;
+}
+
 Pictures render_photons(const Scene& scene, const Settings& settings, std::uint32_t parts) {
     assert(settings.iterations % parts == 0);
     Rig run(scene, settings, plain_device());
@@ -61,19 +72,6 @@ Pictures render_photons(const Scene& scene, const Settings& settings, std::uint3
         before = std::move(now);
     }
     return pictures;
-}
-
-}  // namespace
-
-oracle::PathTracerSettings oracle_settings(const Settings& settings, std::uint32_t samples) {
-    oracle::PathTracerSettings oracle;
-    oracle.size = *settings.size;
-    oracle.samples = samples;
-    oracle.seed = settings.seed;
-    oracle.max_depth = settings.max_depth;
-    oracle.aperture = settings.aperture;
-    oracle.focus_distance = settings.focus_distance.value_or(1.0);
-    return oracle;
 }
 
 TwoWays render_two_ways(const Scene& scene, const Settings& settings, std::uint32_t parts, std::uint32_t samples) {

@@ -19,8 +19,13 @@ using Pictures = std::vector<Image>;
 /// What the oracle's path tracer is asked for: size, depth and lens of the settings.
 oracle::PathTracerSettings oracle_settings(const Settings& settings, std::uint32_t samples);
 
+/// One render's iterations in `parts` of equal length, the mean over each. Photons of a part are its own, and whatever
+/// radius earlier ones have left, its estimate is as good as theirs: parts are uncorrelated. The device is the one
+/// without the validation layer.
+Pictures render_photons(const Scene& scene, const Settings& settings, std::uint32_t parts);
+
 /// The scene by the renderer and by the oracle's path tracer, of the seed, the size, the depth and the lens of the
-/// settings. The device is the one without the validation layer.
+/// settings.
 struct TwoWays {
     Pictures photons;  // parts of one render: its iterations, cut in as many equal parts
     oracle::PathTracing paths;
