@@ -74,7 +74,7 @@ Placed place_triangles(const Scene& scene, const SceneFrame& frame, const std::v
         const Triangle& triangle = scene.triangles[i];
         for (int c = 0; c < 3; ++c) all[i][c] = glm::vec3(frame.point(scene.positions[triangle.vertex[c]]));
         const SurfaceTraits& t = traits[triangle.material];
-        faces.push_back({triangle.material, t.emits, t.glass && !t.thin});
+        faces.push_back({triangle.material, t.emits, t.has(Lobe::transmission) && !t.thin});
     }
     Placed placed;
     placed.source = distinct_triangles(all, faces);

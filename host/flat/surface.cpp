@@ -28,27 +28,85 @@ bool is_black_metal(const Material& m) {
     return m.metallic == 1.0f && m.base_color == black && !m.metallic_roughness_texture;
 }
 
+/// Light gets below its surface, somewhere, and is not let through.
+bool has_base(const Material& m) {
+    return (m.metallic < 1.0f || m.metallic_roughness_texture) && (m.transmission < 1.0f || m.transmission_texture);
+}
+
+bool has_metal(const Material& m) { return m.metallic > 0.0f && !is_black_metal(m); }
+
+bool has_coat(const Material& m) { return has_base(m) && m.specular > 0.0f; }
+
+/// A lobe of facets, of that roughness.
+LobeTraits of_facets(float roughness, const std::optional<Texture>& texture) {
+    return {.smooth = roughness == 0.0f || texture, .rough = roughness > 0.0f};
+}
+
+/// How the material, which is not unlit, has the lobe: one function a row of LOBES, a row without one does not link.
+template <Lobe lobe> LobeTraits lobe_of(const Material& m);
+
+template <> LobeTraits lobe_of<Lobe::diffuse>(const Material& m) {
+    return {.wide = has_base(m) && m.base_color != black};
+}
+
+template <> LobeTraits lobe_of<Lobe::reflection>(const Material& m) {
+    if (!has_metal(m) && !has_coat(m) && !is_glass(m)) return {};
+    return of_facets(m.roughness, m.metallic_roughness_texture);
+}
+
+template <> LobeTraits lobe_of<Lobe::transmission>(const Material& m) {
+    if (!is_glass(m)) return {};
+    LobeTraits lobe = of_facets(m.roughness, m.metallic_roughness_texture);
+    lobe.smooth = lobe.smooth || m.ior == 1.0f;  // no facet bends it
+    return lobe;
+}
+
+template <> LobeTraits lobe_of<Lobe::clearcoat>(const Material& m) {
+    if (!(m.clearcoat > 0.0f)) return {};
+    return of_facets(m.clearcoat_roughness, m.clearcoat_roughness_texture);
+}
+
+enum class Encoding { linear, srgb };
+
 struct NamedTexture {
     const char* name;
     const std::optional<Texture>* texture;
-    bool srgb;
+    Encoding encoding;
 };
 
-/// In the order of TEXTURE_*.
+/// [TEXTURE_*]
 std::array<NamedTexture, TEXTURE_COUNT> textures_of(const Material& m) {
-    return {{{"base colour", &m.base_color_texture, true},
-             {"metallic-roughness", &m.metallic_roughness_texture, false},
-             {"normal", &m.normal_texture, false},
-             {"emissive", &m.emissive_texture, true},
-             {"transmission", &m.transmission_texture, false},
-             {"specular", &m.specular_texture, false},
-             {"specular colour", &m.specular_color_texture, true},
-             {"clearcoat", &m.clearcoat_texture, false},
-             {"clearcoat roughness", &m.clearcoat_roughness_texture, false},
-             {"clearcoat normal", &m.clearcoat_normal_texture, false}}};
+    std::array<NamedTexture, TEXTURE_COUNT> textures;
+    textures[TEXTURE_BASE_COLOR] = {"base colour", &m.base_color_texture, Encoding::srgb};
+    textures[TEXTURE_METALLIC_ROUGHNESS] = {"metallic-roughness", &m.metallic_roughness_texture, Encoding::linear};
+    textures[TEXTURE_NORMAL] = {"normal", &m.normal_texture, Encoding::linear};
+    textures[TEXTURE_EMISSIVE] = {"emissive", &m.emissive_texture, Encoding::srgb};
+#define EXTENSION(name, ...) __VA_ARGS__
+#define TEXTURE(NUMBER, member, json, words, encoding, where) \
+    textures[TEXTURE_##NUMBER] = {words, &m.member, Encoding::encoding};
+#define NORMALS(NUMBER, member, json, words, scale, where) TEXTURE(NUMBER, member, json, words, linear, where)
+#include "scene/material_extensions.h"
+    return textures;
 }
 
+#define EXTENSION(name, ...) __VA_ARGS__
+#define TEXTURE(NUMBER, member, json, words, encoding, where) +1
+#define NORMALS(NUMBER, member, json, words, scale, where) +1
+constexpr int textures_of_extensions = 0
+#include "scene/material_extensions.h"
+    ;
+static_assert(TEXTURE_EMISSIVE + 1 + textures_of_extensions == TEXTURE_COUNT, "each number has its texture");
+
 }  // namespace
+
+bool SurfaceTraits::glossy() const {
+    for (std::size_t i = 0; i < lobes.size(); ++i) {
+        if (Lobe(i) == Lobe::diffuse) continue;
+        // Another lobe that gathers, or one that takes from the diffuse lobe by the direction.
+        if (lobes[i].rough || lobes[i].wide || (lobes[i].there() && has(Lobe::diffuse))) return true;
+    }
+    return false;
+}
 
 SurfaceTraits traits_of(const Material& m, float least_alpha) {
     SurfaceTraits t;
@@ -59,22 +117,15 @@ SurfaceTraits traits_of(const Material& m, float least_alpha) {
     t.textured =
         std::any_of(textures.begin(), textures.end(), [](const NamedTexture& n) { return n.texture->has_value(); });
     if (m.unlit) return t;
-    const bool dielectric = m.metallic < 1.0f || m.metallic_roughness_texture;
-    const bool opaque = m.transmission < 1.0f || m.transmission_texture;
-    t.metal = m.metallic > 0.0f && !is_black_metal(m);
-    t.diffuse = dielectric && opaque && m.base_color != black;
-    t.coat = dielectric && opaque && m.specular > 0.0f;
-    t.glass = is_glass(m);
-    t.thin = t.glass && !is_solid_glass(m);
-    t.absorbs = t.glass && !t.thin && std::isfinite(m.attenuation_distance) && m.attenuation_color != white;
-    t.disperses = t.glass && !t.thin && m.dispersion > 0.0f && m.ior > 1.0f;
-    t.rough = m.roughness > 0.0f;
-    t.clearcoat = m.clearcoat > 0.0f;
-    t.rough_clearcoat = t.clearcoat && m.clearcoat_roughness > 0.0f;
-    const bool reaches_zero = m.roughness == 0.0f || m.metallic_roughness_texture;
-    t.smooth = ((t.metal || t.coat || t.glass) && reaches_zero) || (t.glass && m.ior == 1.0f) ||
-               (t.clearcoat && (m.clearcoat_roughness == 0.0f || m.clearcoat_roughness_texture));
-    t.normal_map = m.normal_texture || (t.clearcoat && m.clearcoat_normal_texture);
+#define LOOK_FOR_LOBE(number, NAME, name, present) t.lobes[number] = lobe_of<Lobe::name>(m);
+    LOBES(LOOK_FOR_LOBE)
+#undef LOOK_FOR_LOBE
+    t.metal = has_metal(m);
+    t.coat = has_coat(m);
+    t.thin = is_glass(m) && !is_solid_glass(m);
+    t.absorbs = is_solid_glass(m) && std::isfinite(m.attenuation_distance) && m.attenuation_color != white;
+    t.disperses = is_solid_glass(m) && m.dispersion > 0.0f && m.ior > 1.0f;
+    t.normal_map = m.normal_texture || (t.has(Lobe::clearcoat) && m.clearcoat_normal_texture);
     return t;
 }
 
@@ -112,7 +163,7 @@ gpu::SurfaceMaterial surface_of(const Material& m, const SurfaceTraits& traits, 
     surface.clearcoat_normal_scale = m.clearcoat_normal_scale;
     const auto textures = textures_of(m);
     for (std::size_t i = 0; i < textures.size(); ++i)
-        surface.texture[i] = table.add(*textures[i].texture, textures[i].srgb);
+        surface.texture[i] = table.add(*textures[i].texture, textures[i].encoding == Encoding::srgb);
     if (m.double_sided) surface.flags |= SURFACE_DOUBLE_SIDED;
     if (traits.thin) surface.flags |= SURFACE_THIN;
     if (traits.alpha) surface.flags |= m.alpha == Material::Alpha::mask ? SURFACE_MASK : SURFACE_BLEND;
@@ -125,7 +176,7 @@ std::string describe_material(const Material& m, const SurfaceTraits& t) {
     std::vector<std::string> parts;
     const auto roughness = [](float r) { return r > 0.0f ? fmt::format("roughness {:g}", r) : std::string("smooth"); };
     if (t.unlit) parts.push_back(fmt::format("unlit, seen as {}", text(m.base_color)));
-    if (t.diffuse)
+    if (t.has(Lobe::diffuse))
         parts.push_back(fmt::format("diffuse {}",
                                     text(m.base_color * (1.0f - (m.metallic_roughness_texture ? 0.0f : m.metallic)))));
     if (t.metal)
@@ -135,7 +186,7 @@ std::string describe_material(const Material& m, const SurfaceTraits& t) {
         parts.push_back(fmt::format("coat of ior {:g}{}, {}", m.ior,
                                     m.specular < 1.0f ? fmt::format(", weight {:g}", m.specular) : "",
                                     roughness(m.roughness)));
-    if (t.glass) {
+    if (t.has(Lobe::transmission)) {
         std::string glass = fmt::format("{} of ior {:g}, tint {}, {}", t.thin ? "thin-walled glass" : "solid glass",
                                         m.ior, text(m.base_color), roughness(m.roughness));
         if (m.transmission < 1.0f) glass += fmt::format(", {:g} of the surface", m.transmission);
@@ -143,7 +194,8 @@ std::string describe_material(const Material& m, const SurfaceTraits& t) {
         if (t.disperses) glass += fmt::format(", Abbe number {:g}", 20.0f / m.dispersion);
         parts.push_back(glass);
     }
-    if (t.clearcoat) parts.push_back(fmt::format("clearcoat {:g}, {}", m.clearcoat, roughness(m.clearcoat_roughness)));
+    if (t.has(Lobe::clearcoat))
+        parts.push_back(fmt::format("clearcoat {:g}, {}", m.clearcoat, roughness(m.clearcoat_roughness)));
     if (parts.empty()) parts.push_back("black");
     if (t.alpha)
         parts.push_back(m.alpha == Material::Alpha::mask ? fmt::format("there where alpha >= {:g}", m.alpha_cutoff)

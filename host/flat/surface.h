@@ -1,6 +1,10 @@
 #pragma once
 // How the kernels treat a glTF material: the one place where its factors and textures become a surface.
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -10,30 +14,44 @@
 
 namespace vkcppm {
 
+enum class Lobe : std::uint32_t {
+#define NAME_LOBE(number, NAME, name, present) name = number,
+    LOBES(NAME_LOBE)
+#undef NAME_LOBE
+};
+#define COUNT_LOBE(number, NAME, name, present) +1
+inline constexpr std::size_t lobe_count = LOBES(COUNT_LOBE);
+#undef COUNT_LOBE
+
+/// How a material has a lobe somewhere on a surface; not at all: none of it.
+struct LobeTraits {
+    bool smooth = false;  // of width 0, a delta
+    bool rough = false;   // of facets, of a width above 0
+    bool wide = false;    // without facets: of width WIDE
+    bool there() const { return smooth || rough || wide; }
+};
+
 /// What a material can show somewhere on a surface, textures and vertex colours considered.
 struct SurfaceTraits {
-    bool diffuse = false;
+    std::array<LobeTraits, lobe_count> lobes{};
     bool metal = false;
     bool coat = false;     // a dielectric coat over a diffuse base
-    bool glass = false;    // transmits
-    bool thin = false;     //   without a volume
-    bool absorbs = false;  //   with absorption in its volume
+    bool thin = false;     // transmits without a volume
+    bool absorbs = false;  // transmits with absorption in its volume
     bool disperses = false;
-    bool rough = false;   // a lobe of reflection or transmission of roughness above 0
-    bool smooth = false;  // a delta lobe of reflection or transmission
-    bool clearcoat = false;
-    bool rough_clearcoat = false;
     bool alpha = false;  // is partly not there
     bool unlit = false;
     bool textured = false;
     bool normal_map = false;
     bool emits = false;
-    bool reflects() const { return metal || coat || glass || clearcoat; }
-    bool gathers() const { return !unlit && (diffuse || is_rough()); }
+    bool has(Lobe lobe) const { return lobes[std::size_t(lobe)].there(); }
+    bool smooth() const { return std::ranges::any_of(lobes, &LobeTraits::smooth); }
+    bool is_rough() const { return std::ranges::any_of(lobes, &LobeTraits::rough); }
+    bool reflects() const { return has(Lobe::reflection) || has(Lobe::clearcoat); }
+    bool gathers() const { return is_rough() || std::ranges::any_of(lobes, &LobeTraits::wide); }
     bool is_lamp() const { return emits && !unlit; }
-    /// What arrives is weighed by its direction: a coat over a diffuse base, or a rough lobe.
-    bool glossy() const { return gathers() && (is_rough() || (diffuse && reflects())); }
-    bool is_rough() const { return (rough && (metal || coat || glass)) || rough_clearcoat; }
+    /// What arrives is weighed by its direction: it gathers, and not on the diffuse lobe alone.
+    bool glossy() const;
 };
 
 /// least_alpha: as of least_alphas() in scene/diagnosis/alpha.h.

@@ -50,31 +50,24 @@ struct Material {
     glm::vec3 emission{0.0f};    // emissiveFactor * emissiveStrength: radiance, W m^-2 sr^-1
     float opacity = 1.0f;        // alpha of baseColorFactor
     Alpha alpha = Alpha::opaque;
-    float alpha_cutoff = 0.5f;          // mask: opaque where the alpha is at least this
-    float transmission = 0.0f;          // KHR_materials_transmission
-    float thickness = 0.0f;             // KHR_materials_volume thicknessFactor; > 0 means a solid volume
-    float ior = 1.5f;                   // KHR_materials_ior; >= 1 (0 means infinity in the extension)
-    float dispersion = 0.0f;            // KHR_materials_dispersion: 20 / Abbe number
-    float specular = 1.0f;              // KHR_materials_specular specularFactor
-    glm::vec3 specular_color{1.0f};     // KHR_materials_specular specularColorFactor
-    float clearcoat = 0.0f;             // KHR_materials_clearcoat clearcoatFactor
-    float clearcoat_roughness = 0.0f;   // KHR_materials_clearcoat clearcoatRoughnessFactor
-    glm::vec3 attenuation_color{1.0f};  // KHR_materials_volume
-    float attenuation_distance = std::numeric_limits<float>::infinity();  // m
-    float normal_scale = 1.0f;                                            // of the normal texture's x and y
-    float clearcoat_normal_scale = 1.0f;
-    bool double_sided = false;                  // an emitter that is not emits from its front side alone
-    bool unlit = false;                         // KHR_materials_unlit: the camera sees base_color, nothing is lit by it
-    std::optional<Texture> base_color_texture;  // sRGB, alpha
+    float alpha_cutoff = 0.5f;                          // mask: opaque where the alpha is at least this
+    float normal_scale = 1.0f;                          // of the normal texture's x and y
+    bool double_sided = false;                          // an emitter that is not emits from its front side alone
+    std::optional<Texture> base_color_texture;          // sRGB, alpha
     std::optional<Texture> metallic_roughness_texture;  // g: roughness, b: metallic
     std::optional<Texture> normal_texture;
-    std::optional<Texture> emissive_texture;             // sRGB
-    std::optional<Texture> transmission_texture;         // r
-    std::optional<Texture> specular_texture;             // a
-    std::optional<Texture> specular_color_texture;       // sRGB
-    std::optional<Texture> clearcoat_texture;            // r
-    std::optional<Texture> clearcoat_roughness_texture;  // g
-    std::optional<Texture> clearcoat_normal_texture;
+    std::optional<Texture> emissive_texture;  // sRGB
+    bool unlit = false;                       // KHR_materials_unlit: the camera sees base_color, nothing is lit by it
+    float ior = 1.5f;                         // KHR_materials_ior; >= 1 (0 means infinity in the extension)
+    float attenuation_distance = std::numeric_limits<float>::infinity();  // KHR_materials_volume, m
+#define EXTENSION(name, ...) __VA_ARGS__
+#define FACTOR(member, json, standard, low, high) float member = standard;
+#define COLOR(member, json, standard, high) glm::vec3 member{standard};
+#define TEXTURE(NUMBER, member, json, words, encoding, where) std::optional<Texture> member;
+#define NORMALS(NUMBER, member, json, words, scale, where) \
+    std::optional<Texture> member;                         \
+    float scale = 1.0f;
+#include "scene/material_extensions.h"
 };
 
 /// Counter-clockwise seen from its front side: cross(p1 - p0, p2 - p0) is the front's normal.

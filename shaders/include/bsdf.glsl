@@ -16,7 +16,7 @@
 #include "include/scene.glsl"
 #include "include/surface.glsl"
 
-// ROW(number, NAME, name, present): of present, in include/lobes/<name>.glsl:
+// What a row ROW(number, NAME, name, present) of LOBES (shared/types.h) has in include/lobes/<name>.glsl:
 //   uint  name_gathers(bsdf)                  HIT_NONE, or on which sides photons are gathered on it
 //   float name_width(bsdf)                    alpha of its facets; 0: a delta; WIDE: it has none, and eye paths do not
 //                                             follow it; light paths and the path tracer do
@@ -31,13 +31,6 @@
 //   vec3  name_evaluate(bsdf, surface, pair, part)
 //                                             its part (PART_*) of the BSDF: rough_lobe weighs one with facets; 0 of a
 //                                             delta, and of PART_FOLLOWED where its width is WIDE
-// Sums go over the rows in this order.
-#define LOBES(ROW)                                        \
-    ROW(0u, DIFFUSE, diffuse, true)                       \
-    ROW(1u, REFLECTION, reflection, HAS_REFLECTION)       \
-    ROW(2u, TRANSMISSION, transmission, HAS_TRANSMISSION) \
-    ROW(3u, CLEARCOAT, clearcoat, HAS_CLEARCOAT)
-
 #define LOBE_NUMBER(number, NAME, name, present) const uint LOBE_##NAME = number;
 LOBES(LOBE_NUMBER)
 #define COUNT_LOBE(number, NAME, name, present) + 1

@@ -49,20 +49,21 @@ using uint = std::uint32_t;
 
 // Features of a scene or of its settings: a pipeline holds only what its scene needs, and buffers that only a feature
 // reads are empty without it. FEATURE_<NAME> is its bit, HAS_<NAME> (include/kernel.glsl) whether a kernel has it.
-//   MATERIAL(bit, NAME, words, trait)  a material on a triangle has the trait of SurfaceTraits (host/flat/surface.h)
+//   MATERIAL(bit, NAME, words, trait)  a material on a triangle has the trait, an expression on the members of
+//                                      SurfaceTraits (host/flat/surface.h)
 //   SCENE(bit, NAME, words)            host/flat/features.cpp asks the scene
 //   SETTING(bit, NAME, words)          the settings ask for it
 // words: its name for people. In the order of bits.
 // clang-format off
 #define FEATURE_TABLE(MATERIAL, SCENE, SETTING)                                                                \
     MATERIAL(0, REFLECTION, reflection, reflects())           /* a lobe of reflection: metal, coat or glass */ \
-    MATERIAL(1, TRANSMISSION, transmission, glass)            /* light passes a surface */                     \
+    MATERIAL(1, TRANSMISSION, transmission, has(Lobe::transmission))  /* light passes a surface */             \
     SCENE(2, SMOOTH, shading normals)            /* photons land where the shading normal is not the geometric one */ \
     SETTING(3, AOVS, further channels)                        /* depth, albedo and normal */                   \
     MATERIAL(4, GLOSS, directional gathering, glossy())       /* gathering weighs every photon by its direction */ \
     MATERIAL(5, ROUGH, rough lobes, is_rough())               /* a lobe of roughness above 0 */                \
     MATERIAL(6, COAT, coats, coat)                            /* a dielectric coat over a diffuse base */      \
-    MATERIAL(7, CLEARCOAT, clearcoats, clearcoat)                                                              \
+    MATERIAL(7, CLEARCOAT, clearcoats, has(Lobe::clearcoat))                                                   \
     MATERIAL(8, THIN, thin walls, thin)                       /* thin-walled transmission */                   \
     MATERIAL(9, VOLUME, absorption, absorbs)                  /* inside solids */                              \
     MATERIAL(10, DISPERSION, dispersion, disperses)                                                            \
@@ -88,6 +89,16 @@ using uint = std::uint32_t;
 #define FEATURE_BIT(bit, NAME, words) VKCPPM_CONST uint FEATURE_##NAME = 1u << bit;
 #define FEATURE_BIT_OF_MATERIAL(bit, NAME, words, trait) FEATURE_BIT(bit, NAME, words)
 FEATURE_TABLE(FEATURE_BIT_OF_MATERIAL, FEATURE_BIT, FEATURE_BIT)
+
+// The lobes of a surface. Kernels go over them by include/bsdf.glsl, which says what a lobe is made of there, and the
+// host by flat/surface.h, which says where a material has them.
+//   ROW(number, NAME, name, present)  present: the constant of a kernel by which scenes without it do not have its code
+// Sums go over the rows in this order.
+#define LOBES(ROW)                                        \
+    ROW(0u, DIFFUSE, diffuse, true)                       \
+    ROW(1u, REFLECTION, reflection, HAS_REFLECTION)       \
+    ROW(2u, TRANSMISSION, transmission, HAS_TRANSMISSION) \
+    ROW(3u, CLEARCOAT, clearcoat, HAS_CLEARCOAT)
 
 // Eye paths ask for lights where direct light is theirs, and where they may follow a rough lobe. Where light is split
 // photons bring caustics alone, and of those an eye path finds what it meets by delta lobes after it has followed a

@@ -73,7 +73,7 @@ TEST_P(PathTracerRooms, AgreeWithDoublePrecision) {
     expect_blocks_agree(trace_on_device(scene, settings), paths, exact, "device over double");
 
     // Textures may be smooth somewhere, but hardly are.
-    const auto smooth = [](const SurfaceTraits& t) { return t.smooth && !t.textured; };
+    const auto smooth = [](const SurfaceTraits& t) { return t.smooth() && !t.textured; };
     if (!std::ranges::any_of(traits_of(scene), smooth)) return;
     const Reference reference = refer(scene, settings, 64, 4096);
     expect_blocks_agree({reference.mean, reference.standard_error}, paths, {.side = 8, .level = 1e-4, .bias = 0.004},

@@ -1,12 +1,15 @@
 // Every lobe of every kind of material, at several widths and angles: reciprocal, sampled in proportion to its density,
-// of the oracle's albedo, and split between following and gathering without rest.
+// of the oracle's albedo, and split between following and gathering without rest; and that the host's traits of a
+// material are what the kernels find.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <boost/math/quadrature/gauss.hpp>
@@ -30,9 +33,15 @@ constexpr std::uint32_t bsdf_words[] = {
 #include "bsdf.spv.inc"
 };
 
-// LOBE_* of shaders/include/bsdf.glsl in its order, and LOBE_NONE. Where one is missing here, `none` is a lobe:
-// WeightsAverageToTheAlbedo then finds 0 for every material.
-enum LobeIndex : std::uint32_t { diffuse, reflection, transmission, clearcoat, none };
+/// LOBE_* and LOBE_NONE of shaders/include/bsdf.glsl.
+// clang-format off
+enum LobeIndex : std::uint32_t {
+#define NAME_LOBE(number, NAME, name, present) name = number,
+    LOBES(NAME_LOBE)
+#undef NAME_LOBE
+    none = lobe_count
+};
+// clang-format on
 
 constexpr std::uint32_t features = FEATURE_REFLECTION | FEATURE_TRANSMISSION | FEATURE_GLOSS | FEATURE_ROUGH |
                                    FEATURE_COAT | FEATURE_CLEARCOAT | FEATURE_THIN;
@@ -165,12 +174,13 @@ protected:
         probe_.input(Binding::params, std::vector{params});
     }
 
-    std::vector<gpu::BsdfOutput> run(const Material& material, const gpu::BsdfView& view,
+    /// views: one for all inputs, or one each.
+    std::vector<gpu::BsdfOutput> run(const Material& material, const std::vector<gpu::BsdfView>& views,
                                      const std::vector<gpu::BsdfInput>& inputs, bool follow) {
         const Scene scene;
         TextureTable textures(scene);
         probe_.input(Binding::materials, std::vector{surface_of(material, traits_of(material, 1.0f), 1.0, textures)});
-        probe_.input(PROBE_VIEW, std::vector{view});
+        probe_.input(PROBE_VIEW, views);
         probe_.input(PROBE_INPUT, inputs);
         probe_.output<gpu::BsdfOutput>(PROBE_OUTPUT, inputs.size());
         probe_.run(inputs.size(), {.iteration = 0,
@@ -181,11 +191,17 @@ protected:
         return probe_.result<gpu::BsdfOutput>(PROBE_OUTPUT, inputs.size());
     }
 
+    std::vector<gpu::BsdfOutput> run(const Material& material, const gpu::BsdfView& view,
+                                     const std::vector<gpu::BsdfInput>& inputs, bool follow) {
+        return run(material, std::vector{view}, inputs, follow);
+    }
+
     Probe probe_{"bsdf", bsdf_words, 32, features};
 };
 
 constexpr oracle::Lobe oracle_lobe[] = {oracle::Lobe::diffuse, oracle::Lobe::reflection, oracle::Lobe::transmission,
                                         oracle::Lobe::coat};
+static_assert(std::size(oracle_lobe) == lobe_count, "a lobe more: oracle_lobe, lobe_alpha, lobe_density, LobeCase");
 
 std::string text(const glm::dvec3& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z); }
 
@@ -200,6 +216,11 @@ template <typename Check> void for_views(Check check) {
             }
         }
     }
+}
+
+/// Alpha of the narrowest lobe of a width above 0.
+double narrowest(const oracle::Bsdf& b) {
+    return b.coat > 0.0 && b.coat_alpha > 0.0 ? std::min(b.alpha, b.coat_alpha) : b.alpha;
 }
 
 TEST_F(BsdfLobes, ValuesAreTheReferences) {
@@ -218,8 +239,12 @@ TEST_F(BsdfLobes, ValuesAreTheReferences) {
         }
         const auto outputs = run(c.material, view_of(c, wo, none), inputs, false);
         const double eta2 = std::pow(index_ratio(c), 2);
-        double alpha = oracle.alpha;
-        if (oracle.coat > 0.0 && oracle.coat_alpha > 0.0) alpha = std::min(alpha, oracle.coat_alpha);
+        const double alpha = narrowest(oracle);
+        const SurfaceTraits traits = traits_of(c.material, 1.0f);
+        const glm::dvec3 albedo = traits.has(Lobe::diffuse)
+                                      ? glm::dvec3(c.material.base_color) * (1.0 - double(c.material.metallic)) *
+                                            (1.0 - double(c.material.transmission))
+                                      : glm::dvec3(0.0);
         for (std::size_t i = 0; i < inputs.size(); ++i) {
             const glm::dvec3 wi(inputs[i].incoming);
             if (std::abs(wi.z) < 1e-4) continue;
@@ -232,6 +257,10 @@ TEST_F(BsdfLobes, ValuesAreTheReferences) {
                     << "wi " << text(wi) << ", channel " << channel;
             }
             bright += want.y > 0.01 ? 1 : 0;
+            // Elsewhere photons are weighed by the diffuse albedo alone.
+            if (!traits.glossy()) {
+                ASSERT_NEAR(want.y, wi.z > 0.0 ? albedo.y / pi : 0.0, 1e-7) << "not glossy, wi " << text(wi);
+            }
         }
     });
     EXPECT_GT(bright, 10000u);
@@ -245,32 +274,50 @@ TEST_F(BsdfLobes, AreReciprocal) {
             // What comes through a clearcoat is weighed by the cosine of either direction's own side.
             const bool skip_transmission = c.material.clearcoat > 0.0f && c.material.transmission > 0.0f;
             SCOPED_TRACE(fmt::format("{}, roughness {}", c.name, roughness));
+            // All pairs of directions there in one launch, and all of them back in one a side of the surface.
+            std::vector<gpu::BsdfView> views;
+            std::vector<gpu::BsdfInput> inputs;
             for (int pair = 0; pair < 20; ++pair) {
                 glm::vec3 wo(glm::normalize(glm::dvec3(normal(random), normal(random), std::abs(normal(random)))));
                 if (wo.z < 0.05f) continue;
-                auto inputs = random_numbers(8, random());
-                auto forth = run(c.material, view_of(c, wo, none), inputs, true);
-                for (const auto& there : forth) {
-                    const glm::vec3 wi = there.direction;
-                    if (there.density == 0.0f || std::abs(wi.z) < 0.05f || there.weight == glm::vec3(0.0f)) continue;
-                    const bool through = wi.z < 0.0f;
-                    if (through && skip_transmission) continue;
-                    Case other = c;
-                    if (through && c.material.thickness > 0.0f) other.front = !c.front;
+                for (const gpu::BsdfInput& input : random_numbers(8, random())) {
+                    views.push_back(view_of(c, wo, none));
+                    inputs.push_back(input);
+                }
+            }
+            const auto forth = run(c.material, views, inputs, true);
+            for (const bool through : {false, true}) {
+                if (through && skip_transmission) continue;
+                Case other = c;
+                if (through && c.material.thickness > 0.0f) other.front = !c.front;
+                std::vector<std::size_t> there;  // into `forth`
+                std::vector<gpu::BsdfView> views_back;
+                std::vector<gpu::BsdfInput> inputs_back;
+                for (std::size_t i = 0; i < forth.size(); ++i) {
+                    const glm::vec3 wi = forth[i].direction;
+                    if (forth[i].density == 0.0f || std::abs(wi.z) < 0.05f || forth[i].weight == glm::vec3(0.0f)) {
+                        continue;
+                    }
+                    if ((wi.z < 0.0f) != through) continue;
                     gpu::BsdfView view = view_of(other, wi, none);
                     if (through) view.geometric = view.normal = view.clearcoat_normal = -view.normal;
-                    std::vector<gpu::BsdfInput> one(1);
-                    one[0].incoming = wo;
-                    const auto back = run(c.material, view, one, false)[0];
-                    // Radiance: f(wo, wi) / n_o^2 = f(wi, wo) / n_i^2.
-                    const double eta2 = through ? std::pow(index_ratio(c), 2) : 1.0;
+                    there.push_back(i);
+                    views_back.push_back(view);
+                    inputs_back.push_back({.incoming = views[i].outgoing, .u = {}});
+                }
+                if (there.empty()) continue;
+                const auto back = run(c.material, views_back, inputs_back, false);
+                // Radiance: f(wo, wi) / n_o^2 = f(wi, wo) / n_i^2.
+                const double eta2 = through ? std::pow(index_ratio(c), 2) : 1.0;
+                const double alpha = std::pow(std::min(roughness, 0.3f), 2.0) * 0.25;  // of the narrowest lobe
+                for (std::size_t i = 0; i < there.size(); ++i) {
+                    const gpu::BsdfOutput& out = forth[there[i]];
+                    const glm::dvec3 wo(views[there[i]].outgoing), wi(out.direction);
+                    const double rounding = 2.0 * critical_rounding(c, wo, wi);
                     for (int channel = 0; channel < 3; ++channel) {
-                        const double a = there.value[channel] / eta2, b = back.value[channel];
-                        const double alpha = std::pow(std::min(roughness, 0.3f), 2.0) * 0.25;  // of the narrowest lobe
-                        const double rounding = 2.0 * critical_rounding(c, glm::dvec3(wo), glm::dvec3(wi));
+                        const double a = out.value[channel] / eta2, b = back[i].value[channel];
                         ASSERT_NEAR(a, b, (2e-5 + 2e-6 / alpha + rounding) * std::max(a, b) + 1e-7)
-                            << "wo " << text(glm::dvec3(wo)) << ", wi " << text(glm::dvec3(wi)) << ", channel "
-                            << channel;
+                            << "wo " << text(wo) << ", wi " << text(wi) << ", channel " << channel;
                     }
                 }
             }
@@ -278,11 +325,19 @@ TEST_F(BsdfLobes, AreReciprocal) {
     }
 }
 
+/// The oracle's, once for all tests that ask for it: it takes longer than what is compared with it.
+glm::dvec3 albedo_of(const Case& c, const glm::vec3& wo) {
+    static std::map<std::tuple<std::string, float, float>, glm::dvec3> known;
+    const auto [entry, is_new] = known.try_emplace({c.name, c.material.roughness, wo.z});
+    if (is_new) entry->second = oracle_of(c).directional_albedo(glm::dvec3(wo), 200);
+    return entry->second;
+}
+
 TEST_F(BsdfLobes, WeightsAverageToTheAlbedo) {
     constexpr std::size_t samples = 1u << 15;
     const auto inputs = random_numbers(samples, 23);
     for_views([&](const Case& c, const glm::vec3& wo) {
-        const glm::dvec3 albedo = oracle_of(c).directional_albedo(glm::dvec3(wo), 200);
+        const glm::dvec3 albedo = albedo_of(c, wo);
         const auto outputs = run(c.material, view_of(c, wo, none), inputs, true);
         glm::dvec3 sum(0.0), squares(0.0);
         double heaviest = 0.0;
@@ -448,6 +503,63 @@ std::vector<double> refracted_shares(const SphereBins& bins, double alpha, doubl
     return shares;
 }
 
+double lobe_alpha(LobeIndex lobe, const oracle::Bsdf& b) { return lobe == clearcoat ? b.coat_alpha : b.alpha; }
+
+TEST_F(BsdfLobes, TheDensityOfAllIsThatOfWhatIsChosenAndFollowed) {
+    constexpr std::size_t samples = 1u << 10;
+    constexpr float wide = FAR;  // WIDE of shaders/include/ggx.glsl
+    const auto inputs = random_numbers(samples, 26);
+    std::array<std::size_t, lobe_count> chosen{};
+    for_views([&](const Case& c, const glm::vec3& outgoing) {
+        const oracle::Bsdf oracle = oracle_of(c);
+        const SurfaceTraits traits = traits_of(c.material, 1.0f);
+        const glm::dvec3 wo = glm::normalize(glm::dvec3(outgoing));
+        const double ratio = index_ratio(c), alpha = narrowest(oracle);
+        const auto outputs = run(c.material, view_of(c, outgoing, none), inputs, true);
+        ASSERT_EQ(outputs[0].sides != HIT_NONE, traits.gathers());
+        std::array<double, lobe_count> probability{};
+        double wide_probability = 0.0;
+        for (const auto& out : outputs) {
+            if (out.lobe == none) continue;
+            ASSERT_LT(out.lobe, lobe_count);
+            const LobeTraits& lobe = traits.lobes[out.lobe];
+            ASSERT_TRUE(out.width == wide   ? lobe.wide
+                        : out.width == 0.0f ? lobe.smooth
+                                            : lobe.rough)
+                << "the traits of lobe " << out.lobe << ", of width " << out.width;
+            if (probability[out.lobe] == 0.0 && out.width == wide) wide_probability += double(out.probability);
+            probability[out.lobe] = out.probability;
+            ++chosen[out.lobe];
+        }
+        // Over the samples the cosine over pi, divided by their density, averages to its integral of 1, and is nowhere
+        // above one over the probability of the lobes that are sampled by it.
+        double sum = 0.0, squares = 0.0;
+        for (const auto& out : outputs) {
+            if (out.lobe == none || out.density >= delta || out.weight == glm::vec3(0.0f)) continue;
+            const glm::dvec3 wi = glm::normalize(glm::dvec3(out.direction));
+            const double share = std::max(0.0, wi.z) / pi / double(out.scatter);
+            sum += share;
+            squares += share * share;
+            if (std::abs(wi.z) < 1e-3) continue;
+            double want = 0.0;
+            for (std::uint32_t lobe = 0; lobe < lobe_count; ++lobe) {
+                const double width = lobe_alpha(LobeIndex(lobe), oracle);
+                if (probability[lobe] == 0.0 || width == 0.0) continue;
+                want += probability[lobe] * lobe_density(LobeIndex(lobe), width, oracle.thin, ratio, wo, wi);
+            }
+            const double relative = 3e-5 + 3e-6 / alpha + critical_rounding(c, wo, wi);
+            ASSERT_NEAR(out.scatter, want, relative * want + 1e-6) << "wi " << text(wi) << ", lobe " << out.lobe;
+        }
+        if (wide_probability < 0.05) return;
+        const double mean = sum / samples;
+        const double error = std::sqrt(std::max(0.0, squares / samples - mean * mean) / samples);
+        EXPECT_NEAR(mean, 1.0, 5.0 * error + 1e-4) << "the integral of the cosine over pi";
+    });
+    for (std::uint32_t lobe = 0; lobe < lobe_count; ++lobe) {
+        EXPECT_GT(chosen[lobe], 1000u) << "no material of cases() has lobe " << lobe;
+    }
+}
+
 struct LobeCase {
     LobeIndex lobe;
     const char* material;
@@ -461,6 +573,9 @@ TEST_F(BsdfLobes, DirectionsFollowTheDensityThatTheyReport) {
         LobeCase{reflection, "glass from inside"},   LobeCase{transmission, "glass"},
         LobeCase{transmission, "glass from inside"}, LobeCase{transmission, "diamond"},
         LobeCase{transmission, "thin glass"},        LobeCase{clearcoat, "clearcoat over diffuse"}};
+    for (std::uint32_t lobe = 0; lobe < lobe_count; ++lobe) {
+        EXPECT_TRUE(std::ranges::any_of(lobes, [&](const LobeCase& of) { return of.lobe == lobe; })) << "lobe " << lobe;
+    }
     const double level = sidak(1e-3, lobes.size() * roughnesses.size() * angles.size());
     for_views([&](const Case& c, const glm::vec3& outgoing) {
         for (const LobeCase& which : lobes) {
@@ -468,7 +583,7 @@ TEST_F(BsdfLobes, DirectionsFollowTheDensityThatTheyReport) {
             const LobeIndex lobe = which.lobe;
             const glm::dvec3 wo = glm::normalize(glm::dvec3(outgoing));
             const oracle::Bsdf oracle = oracle_of(c);
-            const double alpha = lobe == clearcoat ? oracle.coat_alpha : oracle.alpha;
+            const double alpha = lobe_alpha(lobe, oracle);
             const double ratio = index_ratio(c);
             const bool thin = oracle.thin;
             const auto density = [&](const glm::dvec3& wi) { return lobe_density(lobe, alpha, thin, ratio, wo, wi); };
@@ -541,7 +656,7 @@ TEST_F(BsdfLobes, FollowingAndGatheringMakeOneWhole) {
         everywhere[i].incoming = glm::vec3(r * std::cos(turn), r * std::sin(turn), i % 2 == 0 ? z : -z);
     }
     for_views([&](const Case& c, const glm::vec3& wo) {
-        const glm::dvec3 albedo = oracle_of(c).directional_albedo(glm::dvec3(wo), 200);
+        const glm::dvec3 albedo = albedo_of(c, wo);
         const double eta2 = std::pow(index_ratio(c), 2);
         glm::dvec3 sum(0.0), squares(0.0);
         const auto followed = run(c.material, view_of(c, wo, none), inputs, true);

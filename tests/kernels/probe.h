@@ -108,6 +108,9 @@ struct BsdfOutput {
     vec3 weight;  // of sample_lobe
     float density;
     float followed;  // followed_weight
+    float width;     // of the lobe: width_of
+    uint sides;      // gathering_sides
+    float scatter;   // scatter_density of the direction, lobes chosen by their probability
     vec3 value;      // rough_bsdf of all light
     vec3 gathered;   // of light that following the lobe finds, too
 };

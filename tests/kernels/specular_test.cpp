@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "flat/surface.h"
 #include "kernels/probe.h"
 #include "oracle/fresnel.h"
 #include "support/device/gpu.h"
@@ -28,8 +29,7 @@ const std::vector<float> indices = {1.0f, 1.0001f, 1.33f, 1.5f, 2.4f};  // of th
 const glm::vec3 tint(0.9f, 0.5f, 0.25f);
 const glm::vec3 gold(1.0f, 0.78f, 0.36f);
 
-// LOBE_* of shaders/include/bsdf.glsl.
-constexpr std::uint32_t reflection = 1, transmission = 2;
+constexpr auto reflection = std::uint32_t(Lobe::reflection), transmission = std::uint32_t(Lobe::transmission);
 
 std::vector<gpu::SurfaceMaterial> materials() {
     std::vector<gpu::SurfaceMaterial> list;

@@ -54,9 +54,6 @@ public:
 
     Material factors() const {
         const json& pbr = object_or_empty(source_, "pbrMetallicRoughness");
-        const json& volume = extension("KHR_materials_volume");
-        const json& specular = extension("KHR_materials_specular");
-        const json& clearcoat = extension("KHR_materials_clearcoat");
         const auto base_color = pbr.value("baseColorFactor", Double4{1.0, 1.0, 1.0, 1.0});
 
         Material material;
@@ -77,19 +74,18 @@ public:
         const double strength = extension("KHR_materials_emissive_strength").value("emissiveStrength", 1.0);
         material.emission = emitted(vec3_or(source_, "emissiveFactor", 0.0), strength, member("emissiveFactor"),
                                     member("emissiveStrength"), file_.name, warnings_);
-        material.transmission = factor(extension("KHR_materials_transmission"), "transmissionFactor", 0.0, 0.0, 1.0);
-        material.thickness = factor(volume, "thicknessFactor", 0.0, 0.0, FLT_MAX);
-        material.attenuation_color = color(vec3_or(volume, "attenuationColor", 1.0), 1.0, "attenuationColor");
+        const json& volume = extension("KHR_materials_volume");
         if (volume.contains("attenuationDistance")) {
             material.attenuation_distance = factor(volume, "attenuationDistance", 0.0, FLT_MIN, FLT_MAX);
         }
         const double ior = extension("KHR_materials_ior").value("ior", 1.5);
         material.ior = ior == 0.0 ? 0.0f : number(ior, 1.0, FLT_MAX, "ior");  // 0 stands for infinity
-        material.dispersion = factor(extension("KHR_materials_dispersion"), "dispersion", 0.0, 0.0, FLT_MAX);
-        material.specular = factor(specular, "specularFactor", 1.0, 0.0, 1.0);
-        material.specular_color = color(vec3_or(specular, "specularColorFactor", 1.0), FLT_MAX, "specularColorFactor");
-        material.clearcoat = factor(clearcoat, "clearcoatFactor", 0.0, 0.0, 1.0);
-        material.clearcoat_roughness = factor(clearcoat, "clearcoatRoughnessFactor", 0.0, 0.0, 1.0);
+        // clang-format off
+#define EXTENSION(name, ...) { [[maybe_unused]] const json& of = extension(#name); __VA_ARGS__ }
+#define FACTOR(member, json, standard, low, high) material.member = factor(of, json, standard, low, high);
+#define COLOR(member, json, standard, high) material.member = color(vec3_or(of, json, standard), high, json);
+#include "scene/material_extensions.h"
+        // clang-format on
         return material;
     }
 
@@ -100,31 +96,19 @@ public:
         material.base_color_texture = texture(pbr, "baseColorTexture");
         if (material.unlit) return;
 
-        const json& specular = extension("KHR_materials_specular");
-        const json& clearcoat = extension("KHR_materials_clearcoat");
-        const glm::vec3 none(0.0f);
         if (material.metallic > 0.0f || material.roughness > 0.0f) {
             material.metallic_roughness_texture = texture(pbr, "metallicRoughnessTexture");
         }
         material.normal_texture = normal_texture(source_, "normalTexture", material.normal_scale);
-        if (material.emission != none) material.emissive_texture = texture(source_, "emissiveTexture");
-        if (material.transmission > 0.0f) {
-            material.transmission_texture = texture(extension("KHR_materials_transmission"), "transmissionTexture");
-        }
-        if (material.specular > 0.0f) {
-            material.specular_texture = texture(specular, "specularTexture");
-            if (material.specular_color != none) {
-                material.specular_color_texture = texture(specular, "specularColorTexture");
-            }
-        }
-        if (material.clearcoat > 0.0f) {
-            material.clearcoat_texture = texture(clearcoat, "clearcoatTexture");
-            material.clearcoat_normal_texture =
-                normal_texture(clearcoat, "clearcoatNormalTexture", material.clearcoat_normal_scale);
-            if (material.clearcoat_roughness > 0.0f) {
-                material.clearcoat_roughness_texture = texture(clearcoat, "clearcoatRoughnessTexture");
-            }
-        }
+        if (material.emission != glm::vec3(0.0f)) material.emissive_texture = texture(source_, "emissiveTexture");
+        const Material& m = material;
+        // clang-format off
+#define EXTENSION(name, ...) { [[maybe_unused]] const json& of = extension(#name); __VA_ARGS__ }
+#define TEXTURE(NUMBER, member, json, words, encoding, where) if (where) material.member = texture(of, json);
+#define NORMALS(NUMBER, member, json, words, scale, where) \
+    if (where) material.member = normal_texture(of, json, material.scale);
+#include "scene/material_extensions.h"
+        // clang-format on
     }
 
 private:
@@ -225,11 +209,17 @@ std::vector<Material> read_materials(const GltfFile& file, const std::vector<boo
 
 VertexNeeds vertex_needs(const Material& material) {
     VertexNeeds needs;
-    for (const std::optional<Texture>* texture :
-         {&material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture,
-          &material.emissive_texture, &material.transmission_texture, &material.specular_texture,
-          &material.specular_color_texture, &material.clearcoat_texture, &material.clearcoat_roughness_texture,
-          &material.clearcoat_normal_texture}) {
+    const std::optional<Texture>* textures[] = {
+        &material.base_color_texture,
+        &material.metallic_roughness_texture,
+        &material.normal_texture,
+        &material.emissive_texture,
+#define EXTENSION(name, ...) __VA_ARGS__
+#define TEXTURE(NUMBER, member, json, words, encoding, where) &material.member,
+#define NORMALS(NUMBER, member, json, words, scale, where) &material.member,
+#include "scene/material_extensions.h"
+    };
+    for (const std::optional<Texture>* texture : textures) {
         if (*texture) needs.uv[(*texture)->uv_set] = true;
     }
     needs.tangents = material.normal_texture || material.clearcoat_normal_texture;

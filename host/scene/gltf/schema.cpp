@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <span>
 
@@ -76,11 +77,10 @@ constexpr int min_filters[] = {9728, 9729, 9984, 9985, 9986, 9987};
 constexpr int wraps[] = {10497, 33071, 33648};
 
 constexpr std::string_view supported_extensions[] = {
-    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",  "KHR_lights_punctual",
-    "KHR_materials_clearcoat", "KHR_materials_dispersion", "KHR_materials_emissive_strength",
-    "KHR_materials_ior",       "KHR_materials_specular",   "KHR_materials_transmission",
-    "KHR_materials_unlit",     "KHR_materials_volume",     "KHR_mesh_quantization",
-    "KHR_texture_transform",
+    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_lights_punctual",
+    "KHR_mesh_quantization",   "KHR_texture_transform",
+#define EXTENSION(name, ...) #name,
+#include "scene/material_extensions.h"
 };
 
 constexpr const char* lights_pointer = "/extensions/KHR_lights_punctual/lights";
@@ -207,40 +207,21 @@ constexpr Field pbr_fields[] = {
     object("baseColorTexture", texture_info_fields),
     object("metallicRoughnessTexture", texture_info_fields),
 };
-constexpr Field emissive_strength_fields[] = {number("emissiveStrength")};
-constexpr Field transmission_fields[] = {number("transmissionFactor"),
-                                         object("transmissionTexture", texture_info_fields)};
-constexpr Field clearcoat_fields[] = {
-    number("clearcoatFactor"),
-    object("clearcoatTexture", texture_info_fields),
-    number("clearcoatRoughnessFactor"),
-    object("clearcoatRoughnessTexture", texture_info_fields),
-    object("clearcoatNormalTexture", normal_texture_fields),
-};
-constexpr Field dispersion_fields[] = {number("dispersion")};
-constexpr Field ior_fields[] = {number("ior")};
-constexpr Field volume_fields[] = {
-    number("thicknessFactor"),
-    number("attenuationDistance"),
-    numbers("attenuationColor", 3),
-    object("thicknessTexture", texture_info_fields),
-};
-constexpr Field specular_fields[] = {
-    number("specularFactor"),
-    numbers("specularColorFactor", 3),
-    object("specularTexture", texture_info_fields),
-    object("specularColorTexture", texture_info_fields),
-};
+constexpr Field texture(const char* name) { return object(name, texture_info_fields); }
+// clang-format off
+#define FACTOR(member, json, standard, low, high) number(json),
+#define COLOR(member, json, standard, high) numbers(json, 3),
+#define TEXTURE(NUMBER, member, json, words, encoding, where) texture(json),
+#define NORMALS(NUMBER, member, json, words, scale, where) object(json, normal_texture_fields),
+#define OTHER(kind, json) kind(json),
+// A list, as one may have no members.
+#define EXTENSION(name, ...) constexpr std::initializer_list<Field> name##_fields = {__VA_ARGS__};
+#include "scene/material_extensions.h"
 constexpr Field material_extension_fields[] = {
-    object("KHR_materials_emissive_strength", emissive_strength_fields),
-    object("KHR_materials_transmission", transmission_fields),
-    object("KHR_materials_ior", ior_fields),
-    object("KHR_materials_volume", volume_fields),
-    object("KHR_materials_specular", specular_fields),
-    object("KHR_materials_clearcoat", clearcoat_fields),
-    object("KHR_materials_dispersion", dispersion_fields),
-    object("KHR_materials_unlit", {}),
+#define EXTENSION(name, ...) object(#name, {name##_fields.begin(), name##_fields.size()}),
+#include "scene/material_extensions.h"
 };
+// clang-format on
 constexpr Field material_fields[] = {
     text("name"),
     object("pbrMetallicRoughness", pbr_fields),
