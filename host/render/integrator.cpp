@@ -18,7 +18,7 @@ namespace vkcppm {
 namespace {
 
 constexpr std::uint32_t most_photons_per_lane = 64;
-constexpr std::uint32_t stride_invocations = 16384;  // of kernels that stride over their input
+constexpr std::uint32_t stride_invocations = 16384;  // of kernels that stride over their input, at most
 constexpr std::uint32_t first_photon_capacity = 6;   // photons a path, before a render knows better
 constexpr double radius_cap = 0.2;                   // of the scene's radius
 constexpr double footprint_cap = 64.0;               // footprints of the pixel
@@ -220,7 +220,9 @@ void Integrator::build_grid(std::uint32_t i) {
     scan(i, COUNTERS_OF_PATHS(params_), params_.photons + 1);  // photons before each path, and in all
     gpu::Launch clear = plain;
     clear.search_group = kernels_.at(KernelId::knn).choice.forms().front().group;  // the form that launch_rounds takes
-    launch(KernelId::grid_clear, stride_invocations, clear);
+    // Else a small render spends a third of its time on invocations that find nothing. No lights: no photons.
+    const std::uint32_t striding = std::clamp(params_.photons, 1u, stride_invocations);
+    launch(KernelId::grid_clear, striding, clear);
     for (std::uint32_t level = 0; level < params_.grid_levels; ++level) {
         gpu::Launch push = plain;
         push.level = level;
@@ -234,7 +236,7 @@ void Integrator::build_grid(std::uint32_t i) {
         scan(i, COUNTERS_OF_RADIX(params_), params_.sort_lanes << digit_bits_);
         launch(KernelId::radix_scatter, params_.sort_lanes, push);
     }
-    launch(KernelId::grid_order, stride_invocations, plain);
+    launch(KernelId::grid_order, striding, plain);
     scan(i, COUNTERS_OF_CELLS, params_.cells + 1);  // photons before each cell
 }
 
