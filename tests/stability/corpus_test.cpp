@@ -37,11 +37,17 @@ void keep_gathering(Rig& rig, std::vector<bool>& gathers) {
     }
 }
 
-/// Returns the number of pixels that gather photons.
-std::size_t expect_sound_picture(const Scene& scene) {
+struct Rendered {
+    std::size_t gathering = 0;  // pixels that gather photons
+    std::size_t lit = 0;        // of those, that are not black
+};
+
+Rendered expect_sound_picture(const Scene& scene, const char* direct) {
+    SCOPED_TRACE(fmt::format("direct light {}", direct));
     Settings settings;
     settings.size = Extent{16, 16};
     settings.photons = 256;
+    settings.direct = direct;
     const std::size_t messages = device().validation_messages().size();
     Rig rig(scene, settings);
     std::vector<bool> gathers(rig.pixels(), true);
@@ -52,18 +58,26 @@ std::size_t expect_sound_picture(const Scene& scene) {
     EXPECT_EQ(rig.integrator.invalid(), 0u);
     EXPECT_EQ(device().validation_messages().size(), messages) << "messages of the validation layer are below";
     const Image image = rig.integrator.resolve();
-    std::size_t gathering = 0, lit = 0;
+    Rendered rendered;
     for (std::size_t i = 0; i < image.rgb.size(); ++i) {
         const glm::vec3& rgb = image.rgb[i];
         for (int c = 0; c < 3; ++c) {
             EXPECT_TRUE(std::isfinite(rgb[c]) && rgb[c] >= 0.0f) << "pixel " << i << ": " << rgb[c];
         }
-        gathering += gathers[i] ? 1 : 0;
-        lit += gathers[i] && rgb != glm::vec3(0.0f) ? 1 : 0;
+        rendered.gathering += gathers[i] ? 1 : 0;
+        rendered.lit += gathers[i] && rgb != glm::vec3(0.0f) ? 1 : 0;
     }
-    // The rest are in the shadow of the only light.
-    EXPECT_GE(2 * lit, gathering) << "only " << lit << " of " << gathering << " pixels that gather are not black";
-    return gathering;
+    return rendered;
+}
+
+/// Renders it both ways. Returns whether a pixel gathers photons.
+bool expect_sound_pictures(const Scene& scene) {
+    expect_sound_picture(scene, direct_sampled);
+    // Few photons come to what the only light does not see, and a ray to it none: lit is what photons light.
+    const Rendered rendered = expect_sound_picture(scene, direct_gathered);
+    EXPECT_GE(4 * rendered.lit, 3 * rendered.gathering)
+        << "only " << rendered.lit << " of " << rendered.gathering << " pixels that gather are not black";
+    return rendered.gathering > 0;
 }
 
 /// Every `count`-th file of a folder from the `index`-th on: a test of minutes is cut in parts that run side by side.
@@ -99,7 +113,7 @@ TEST_P(Corpus, EveryModelRenders) {
         }
         scene.environment = sky();
         if (part.one_a_feature_set && !seen.insert(bits_of(flatten(scene).features)).second) continue;
-        gathering += expect_sound_picture(scene) > 0 ? 1 : 0;
+        gathering += expect_sound_pictures(scene) ? 1 : 0;
         ++rendered;
     }
     EXPECT_GE(rendered, part.rendered);
@@ -117,7 +131,7 @@ TEST_F(Samples, EveryModelRenders) {
         Scene scene = load(model.file);
         scene.environment = sky();
         if (!seen.insert(bits_of(flatten(scene).features)).second) continue;
-        gathering += expect_sound_picture(scene) > 0 ? 1 : 0;
+        gathering += expect_sound_pictures(scene) ? 1 : 0;
     }
     EXPECT_GE(seen.size(), 12u) << "sets of features";
     EXPECT_GE(gathering, 8u) << "models with pixels that gather photons, of " << seen.size();
