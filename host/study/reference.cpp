@@ -15,7 +15,7 @@
 #include "render/integrator.h"
 #include "render/path_tracer.h"
 #include "render/render.h"
-#include "study/moments.h"
+#include "study/batch_mean.h"
 #include "vk/device.h"
 
 namespace vkcppm {
@@ -41,28 +41,28 @@ Settings caustic_settings(const Settings& render) {
     return settings;
 }
 
-/// One half of the light: batches, their moments and their time.
+/// One half of the light: batches, the light they add up to, and their time.
 class Half {
 public:
-    Half(Extent extent, std::uint32_t bound) : moments_(extent), bound_(bound) {}
+    Half(Extent extent, std::uint32_t bound) : light_(extent), bound_(bound) {}
     virtual ~Half() = default;
 
     void add_batch() {
         const double start = wall_now();
-        add(moments_);
+        add(light_);
         seconds_ += wall_now() - start;
     }
-    const Moments& moments() const { return moments_; }
-    std::size_t batches() const { return moments_.batches(); }
+    const BatchMean& light() const { return light_; }
+    std::size_t batches() const { return light_.batches(); }
     bool done() const { return batches() >= bound_; }
     double seconds() const { return seconds_; }
     double seconds_a_batch() const { return seconds_ / double(batches()); }
 
 protected:
-    virtual void add(Moments& moments) = 0;
+    virtual void add(BatchMean& light) = 0;
 
 private:
-    Moments moments_;
+    BatchMean light_;
     std::size_t bound_;
     double seconds_ = 0.0;
 };
@@ -76,7 +76,7 @@ public:
     PathTracer tracer;
 
 private:
-    void add(Moments& moments) override { moments.add(tracer.trace()); }
+    void add(BatchMean& light) override { light.add(tracer.trace()); }
 };
 
 class Caustics : public Half {
@@ -90,7 +90,7 @@ public:
 
 private:
     /// The integrator knows the mean over all its iterations: a batch is what its sum grew by.
-    void add(Moments& moments) override {
+    void add(BatchMean& light) override {
         integrator.run(iterations_a_batch);
         const Image mean = integrator.resolve();
         std::vector<glm::dvec3> batch;
@@ -99,7 +99,7 @@ private:
             batch.push_back((sum - sum_[i]) / double(iterations_a_batch));
             sum_[i] = sum;
         }
-        moments.add(batch);
+        light.add(batch);
     }
 
     std::vector<glm::dvec3> sum_;
@@ -108,7 +108,7 @@ private:
 double mean_channel(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
 
 /// Squared error a pixel over r^2 + epsilon, the mean over channels, as relMSE weighs it.
-std::vector<double> relative_errors(const Moments& half, const std::vector<glm::dvec3>& mean) {
+std::vector<double> relative_errors(const BatchMean& half, const std::vector<glm::dvec3>& mean) {
     std::vector<double> errors;
     for (std::size_t i = 0; i < mean.size(); ++i) {
         errors.push_back(mean_channel(half.squared_error(i) / (mean[i] * mean[i] + relmse_epsilon)));
@@ -130,7 +130,7 @@ public:
     std::vector<glm::dvec3> mean() const {
         std::vector<glm::dvec3> sum(extent_.pixels(), glm::dvec3(0.0));
         for (const Half* half : halves_) {
-            for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += half->moments().mean()[i];
+            for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += half->light().mean()[i];
         }
         return sum;
     }
@@ -157,7 +157,7 @@ public:
         Half* best = open.front();
         double best_gain = -1.0;
         for (Half* half : halves_) {
-            const double error = average(relative_errors(half->moments(), r));
+            const double error = average(relative_errors(half->light(), r));
             relmse_ += error;
             const double gain = error / double(half->batches() + 1) / half->seconds_a_batch();
             if (!half->done() && gain > best_gain) {
@@ -211,23 +211,23 @@ glm::dvec3 srgb_squares(const glm::dvec3& mean, const glm::dvec3& standard_error
 void fill_statistics(Reference& result, const Paths& paths, const Caustics* caustics,
                      const std::vector<glm::dvec3>& mean) {
     const Extent extent = *result.settings.render.size;
-    std::vector<double> relative = relative_errors(paths.moments(), mean);
+    std::vector<double> relative = relative_errors(paths.light(), mean);
     result.relmse_paths = average(relative);
     double light = 0.0, caustic_light = 0.0;
     std::vector<double> errors;
     if (caustics) {
-        const std::vector<double> more = relative_errors(caustics->moments(), mean);
+        const std::vector<double> more = relative_errors(caustics->light(), mean);
         result.relmse_caustics = average(more);
         for (std::size_t i = 0; i < more.size(); ++i) {
             relative[i] += more[i];
-            caustic_light += mean_channel(caustics->moments().mean()[i]);
+            caustic_light += mean_channel(caustics->light().mean()[i]);
         }
     }
     result.relmse = result.relmse_paths + result.relmse_caustics;
     result.mean.extent = result.standard_error.extent = extent;
     for (std::size_t i = 0; i < mean.size(); ++i) {
-        glm::dvec3 squared = paths.moments().squared_error(i);
-        if (caustics) squared += caustics->moments().squared_error(i);
+        glm::dvec3 squared = paths.light().squared_error(i);
+        if (caustics) squared += caustics->light().squared_error(i);
         result.mean.rgb.emplace_back(mean[i]);
         result.standard_error.rgb.emplace_back(glm::sqrt(squared));
         result.mse += mean_channel(squared) / double(mean.size());

@@ -15,7 +15,7 @@
 #include "flat/surface.h"
 #include "render/path_tracer.h"
 #include "render/render.h"
-#include "study/moments.h"
+#include "study/batch_mean.h"
 #include "study/reference.h"
 #include "support/device/gpu.h"
 #include "support/files/evidence.h"
@@ -36,14 +36,14 @@ oracle::PathTracing trace_on_device(const Scene& scene, const Settings& wanted) 
     const FlatScene flat = flatten(scene);
     const SceneOnDevice on_device(plain_device(), flat);
     PathTracer tracer(on_device, scene.cameras.at(0), settings, PathTracer::Light::all);
-    Moments moments(*settings.size);
-    for (std::uint32_t i = 0; i < samples / PathTracer::batch; ++i) moments.add(tracer.trace());
+    BatchMean batches(*settings.size);
+    for (std::uint32_t i = 0; i < samples / PathTracer::batch; ++i) batches.add(tracer.trace());
     EXPECT_EQ(tracer.invalid(), 0u);
     oracle::PathTracing result;
     result.mean.extent = result.standard_error.extent = *settings.size;
     for (std::size_t i = 0; i < settings.size->pixels(); ++i) {
-        result.mean.rgb.emplace_back(moments.mean()[i]);
-        result.standard_error.rgb.emplace_back(glm::sqrt(moments.squared_error(i)));
+        result.mean.rgb.emplace_back(batches.mean()[i]);
+        result.standard_error.rgb.emplace_back(glm::sqrt(batches.squared_error(i)));
     }
     return result;
 }
@@ -175,7 +175,7 @@ TEST(Reference, ErrorIsTheSpreadOfSeeds) {
     Settings settings;
     const Scene scene = glass_room(settings);
     constexpr std::uint32_t seeds = 10;
-    Moments moments(*settings.size);
+    BatchMean batches(*settings.size);
     std::vector<double> stated(settings.size->pixels(), 0.0);  // squared standard error, mean over seeds and channels
     double relmse = 0.0, mse = 0.0, srgb_mse = 0.0;
     std::vector<Image> pictures;
@@ -184,7 +184,7 @@ TEST(Reference, ErrorIsTheSpreadOfSeeds) {
         pictures.push_back(reference.mean);
         mse += reference.mse / seeds;
         srgb_mse += reference.srgb_mse / seeds;
-        moments.add(reference.mean);
+        batches.add(reference.mean);
         for (std::size_t i = 0; i < stated.size(); ++i) {
             const glm::dvec3 error(reference.standard_error.rgb[i]);
             stated[i] += glm::dot(error, error) / (3.0 * seeds);
@@ -193,11 +193,11 @@ TEST(Reference, ErrorIsTheSpreadOfSeeds) {
     }
     double spread_sum = 0.0, stated_sum = 0.0, relative_spread = 0.0;
     for (std::size_t i = 0; i < stated.size(); ++i) {
-        const glm::dvec3 spread = moments.squared_error(i) * double(seeds);  // variance of one picture
-        const double weight = 1.0 / (glm::dot(moments.mean()[i], moments.mean()[i]) / 3.0 + 0.01);
+        const glm::dvec3 spread = batches.squared_error(i) * double(seeds);  // variance of one picture
+        const double weight = 1.0 / (glm::dot(batches.mean()[i], batches.mean()[i]) / 3.0 + 0.01);
         spread_sum += (spread.x + spread.y + spread.z) / 3.0 * weight;
         stated_sum += stated[i] * weight;
-        relative_spread += glm::dot(spread, 1.0 / (moments.mean()[i] * moments.mean()[i] + 0.01)) / 3.0;
+        relative_spread += glm::dot(spread, 1.0 / (batches.mean()[i] * batches.mean()[i] + 0.01)) / 3.0;
     }
     // 192 pixels with 9 degrees of freedom each; what is stated may be too much, as pixels are sampled evenly.
     const double ratio = spread_sum / stated_sum;

@@ -10,9 +10,9 @@
 
 namespace vkcppm {
 
-class Moments {
+class BatchMean {
 public:
-    explicit Moments(Extent extent);
+    explicit BatchMean(Extent extent);
 
     /// One more batch, of the same size of picture and as many samples as the others.
     void add(const std::vector<glm::dvec3>& batch);

@@ -1,12 +1,12 @@
-#include "study/moments.h"
+#include "study/batch_mean.h"
 
 #include <cassert>
 
 namespace vkcppm {
 
-Moments::Moments(Extent extent) : mean_(extent.pixels(), glm::dvec3(0.0)), squares_(mean_) {}
+BatchMean::BatchMean(Extent extent) : mean_(extent.pixels(), glm::dvec3(0.0)), squares_(mean_) {}
 
-void Moments::add(const std::vector<glm::dvec3>& batch) {
+void BatchMean::add(const std::vector<glm::dvec3>& batch) {
     assert(batch.size() == mean_.size());
     ++count_;
     for (std::size_t i = 0; i < mean_.size(); ++i) {
@@ -16,9 +16,9 @@ void Moments::add(const std::vector<glm::dvec3>& batch) {
     }
 }
 
-void Moments::add(const Image& batch) { add(std::vector<glm::dvec3>(batch.rgb.begin(), batch.rgb.end())); }
+void BatchMean::add(const Image& batch) { add(std::vector<glm::dvec3>(batch.rgb.begin(), batch.rgb.end())); }
 
-glm::dvec3 Moments::squared_error(std::size_t pixel) const {
+glm::dvec3 BatchMean::squared_error(std::size_t pixel) const {
     if (count_ < 2) return glm::dvec3(0.0);
     return squares_[pixel] / (double(count_ - 1) * double(count_));
 }
