@@ -1,8 +1,12 @@
 #include "core/process.h"
 
 #include <chrono>
+#include <fstream>
+#include <limits>
+#include <string>
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 namespace vkcppm {
 namespace {
@@ -22,6 +26,18 @@ double wall_now() { return std::chrono::duration<double>(std::chrono::steady_clo
 double cpu_now() {
     const rusage usage = usage_now();
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+std::uint64_t total_memory() { return std::uint64_t(sysconf(_SC_PHYS_PAGES)) * std::uint64_t(sysconf(_SC_PAGESIZE)); }
+
+std::uint64_t available_memory() {
+    std::ifstream meminfo("/proc/meminfo");
+    for (std::string name; meminfo >> name;) {
+        std::uint64_t kilobytes = 0;
+        if (name == "MemAvailable:" && meminfo >> kilobytes) return kilobytes * 1024;
+        meminfo.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+    }
+    return std::numeric_limits<std::uint64_t>::max();
 }
 
 std::uint64_t peak_memory() {

@@ -1,16 +1,17 @@
 #include "flat/bvh.h"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cassert>
 #include <cmath>
-#include <iterator>
+#include <cstddef>
+#include <cstring>
 #include <limits>
 #include <memory>
-#include <numeric>
 #include <utility>
 
+#include <glm/common.hpp>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
 namespace vkcppm {
@@ -57,30 +58,70 @@ struct Bounds {
     }
 };
 
-/// A triangle as the builder moves it about.
+/// A triangle as the builder moves it about: the box and the index of the triangle, close together, for there may be
+/// very many.
 struct Primitive {
-    Bounds bounds;
+    std::array<float, 3> low;
+    std::array<float, 3> high;
     std::uint32_t index;
 
     static Primitive of(const std::array<glm::vec3, 3>& triangle, std::uint32_t index) {
-        Primitive primitive{Bounds::nothing(), index};
-        for (const glm::vec3& corner : triangle) primitive.bounds.grow(Float4{corner.x, corner.y, corner.z, 0.0f});
-        return primitive;
+        const glm::vec3 low = glm::min(triangle[0], glm::min(triangle[1], triangle[2]));
+        const glm::vec3 high = glm::max(triangle[0], glm::max(triangle[1], triangle[2]));
+        return {{low.x, low.y, low.z}, {high.x, high.y, high.z}, index};
     }
-    Float4 centre() const { return all(0.5f) * (bounds.low + bounds.high); }
-};
+    Bounds bounds() const { return {xyz(offsetof(Primitive, low)), xyz(offsetof(Primitive, high))}; }
+    Float4 centre() const { return all(0.5f) * (xyz(offsetof(Primitive, low)) + xyz(offsetof(Primitive, high))); }
 
-/// A node of the binary tree, whose leaves hold one triangle each. The surface area heuristic tells how it is best cut
-/// into four-wide nodes and leaves (Ylitie, Karras and Laine 2017, section 3).
+private:
+    /// The three floats at that byte, in one load: there is a word behind either.
+    Float4 xyz(std::size_t at) const {
+        Int4 words;
+        std::memcpy(&words, reinterpret_cast<const char*>(this) + at, sizeof words);
+        return std::bit_cast<Float4>(words & Int4{-1, -1, -1, 0});
+    }
+};
+static_assert(sizeof(Primitive) == 28);
+
+/// An inner node of the binary tree, whose leaves hold one triangle each. The surface area heuristic tells how it is
+/// best cut into four-wide nodes and leaves (Ylitie, Karras and Laine 2017, section 3). Triangles of a subtree stand
+/// side by side, so that the node is known by the place where its right half begins, and its children by theirs.
 struct BinaryNode {
-    Bounds bounds;
-    std::uint32_t first;  // triangles of the subtree
-    std::uint32_t count;
-    std::uint32_t left;
-    std::uint32_t right;
+    std::array<float, 3> low;
+    std::array<float, 3> high;
     /// Least cost of the subtree, in areas times triangle tests, as at most i + 1 children of a four-wide node.
     std::array<float, width - 1> cost;
-    bool leaf;  // as one child it is best a leaf
+    std::uint32_t left : 31;  // of its left child, where that is no leaf
+    std::uint32_t leaf : 1;   // as one child it is best a leaf
+    std::uint32_t right;      // of its right child
+};
+
+/// The binary tree: the triangles in the order of its leaves, and the nodes by the place where their right half begins.
+struct BinaryTree {
+    std::unique_ptr<Primitive[]> triangles;
+    std::unique_ptr<BinaryNode[]> nodes;
+    std::uint32_t root = 0;
+};
+
+/// A subtree of it, with what follows from its triangles or is kept by its node.
+struct Subtree {
+    std::uint32_t first;  // triangle
+    std::uint32_t count;
+    std::uint32_t node;  // where there are several
+
+    Bounds bounds(const BinaryTree& tree) const {
+        if (count == 1) return tree.triangles[first].bounds();
+        const BinaryNode& n = tree.nodes[node];
+        return {Float4{n.low[0], n.low[1], n.low[2], 0.0f}, Float4{n.high[0], n.high[1], n.high[2], 0.0f}};
+    }
+    std::array<float, width - 1> cost(const BinaryTree& tree) const {
+        if (count > 1) return tree.nodes[node].cost;
+        const float cost = tree.triangles[first].bounds().half_area() * (leaf_cost + 1.0f);
+        return {cost, cost, cost};
+    }
+    bool leaf(const BinaryTree& tree) const { return count == 1 || tree.nodes[node].leaf != 0; }
+    Subtree left(const BinaryTree& tree) const { return {first, node - first, tree.nodes[node].left}; }
+    Subtree right(const BinaryTree& tree) const { return {node, first + count - node, tree.nodes[node].right}; }
 };
 
 /// How many of `slots` children the left half takes, at least one a half, and what both cost.
@@ -88,10 +129,10 @@ struct Share {
     std::uint32_t left;
     float cost;
 
-    Share(const BinaryNode& a, const BinaryNode& b, std::uint32_t slots)
-        : left(1), cost(a.cost[0] + b.cost[slots - 2]) {
+    using Costs = std::array<float, width - 1>;
+    Share(const Costs& a, const Costs& b, std::uint32_t slots) : left(1), cost(a[0] + b[slots - 2]) {
         for (std::uint32_t k = 2; k < slots; ++k) {
-            const float other = a.cost[k - 1] + b.cost[slots - k - 1];
+            const float other = a[k - 1] + b[slots - k - 1];
             if (other < cost) {
                 left = k;
                 cost = other;
@@ -133,15 +174,16 @@ class Bins {
 public:
     Bins(const Slabs& slabs, std::span<const Primitive> primitives) {
         for (const Primitive& primitive : primitives) {
+            const Bounds bounds = primitive.bounds();
             const Int4 slab = slabs.of(primitive.centre());
             for (int axis = 0; axis < 3; ++axis) {
                 Axis& along = axes_[axis];
                 const int b = slab[axis];
                 if (along.used & 1u << b) {
-                    along.bounds[b].grow(primitive.bounds);
+                    along.bounds[b].grow(bounds);
                     ++along.count[b];
                 } else {
-                    along.bounds[b] = primitive.bounds;
+                    along.bounds[b] = bounds;
                     along.count[b] = 1;
                     along.used |= 1u << b;
                 }
@@ -205,23 +247,22 @@ private:
     std::array<Axis, 3> axes_;
 };
 
-/// Builds the binary tree, subtrees in parallel. A node's triangles lie side by side in one of two buffers and go over
-/// into the other one for its children, in the same order on either side of the plane.
+/// Builds the binary tree, subtrees in parallel. A node's triangles lie side by side, in the same order on either side
+/// of the plane as before: the smaller side waits in a second buffer while the other closes ranks.
 class Builder {
 public:
     explicit Builder(std::span<const std::array<glm::vec3, 3>> triangles)
-        : order_(triangles.size()), nodes_(std::make_unique_for_overwrite<BinaryNode[]>(2 * triangles.size())) {
-        for (auto& buffer : primitives_) buffer = std::make_unique_for_overwrite<Primitive[]>(triangles.size());
+        : waiting_(std::make_unique_for_overwrite<Primitive[]>(triangles.size() / 2 + 1)) {
+        tree_.triangles = std::make_unique_for_overwrite<Primitive[]>(triangles.size());
+        tree_.nodes = std::make_unique_for_overwrite<BinaryNode[]>(triangles.size());
         Range all(0, std::uint32_t(triangles.size()));
-        for (std::uint32_t i = 0; i < all.last; ++i) {
-            primitives_[0][i] = Primitive::of(triangles[i], i);
-            all.centres.grow(primitives_[0][i].centre());
-        }
-        build(allocate(), all, 0);
+        tbb::parallel_for(std::uint32_t(0), all.last,
+                          [&](std::uint32_t i) { tree_.triangles[i] = Primitive::of(triangles[i], i); });
+        for (const Primitive& primitive : primitives(all)) all.centres.grow(primitive.centre());
+        tree_.root = build(all, 0);
     }
 
-    const BinaryNode* nodes() const { return nodes_.get(); }
-    std::span<const std::uint32_t> order() const { return order_; }
+    BinaryTree take_tree() { return std::move(tree_); }
 
 private:
     /// Triangles of a node.
@@ -234,36 +275,37 @@ private:
         std::uint32_t count() const { return last - first; }
     };
 
-    std::uint32_t allocate() { return next_.fetch_add(1, std::memory_order_relaxed); }
+    std::span<Primitive> primitives(const Range& range) { return {&tree_.triangles[range.first], range.count()}; }
 
-    std::span<Primitive> primitives(int depth, const Range& range) {
-        return {&primitives_[depth % 2][range.first], range.count()};
-    }
+    /// Room for half of the triangles of a node, which no other node has that does not share some with it.
+    Primitive* waiting(const Range& range) { return &waiting_[(range.first + 1) / 2]; }
 
-    void build(std::uint32_t index, const Range& range, int depth) {
-        const std::span<const Primitive> here = primitives(depth, range);
-        BinaryNode& node = nodes_[index];
-        if (range.count() == 1) {
-            const float cost = here.front().bounds.half_area() * (leaf_cost + 1.0f);
-            node = {here.front().bounds, range.first, 1, 0, 0, {cost, cost, cost}, true};
-            order_[range.first] = here.front().index;
-            return;
-        }
+    /// Returns the place of the node; of one triangle there is none.
+    std::uint32_t build(const Range& range, int depth) {
+        if (range.count() == 1) return 0;
         const Slabs slabs(range.centres);
-        const Bins table(slabs, here);
+        const Bins table(slabs, primitives(range));
         const Split split = depth < max_sah_depth ? table.best_split() : Split();
-        const auto halves = split.axis >= 0 ? partition(range, slabs, table, split, depth) : halve(range, depth);
-        node = {table.whole(), range.first, range.count(), allocate(), allocate(), {}, false};
-        const auto left = [&] { build(node.left, halves[0], depth + 1); };
-        const auto right = [&] { build(node.right, halves[1], depth + 1); };
+        const auto halves = split.axis >= 0 ? partition(range, slabs, table, split) : halve(range);
+        BinaryNode& node = tree_.nodes[halves[1].first] = {};
+        const Bounds whole = table.whole();
+        for (int axis = 0; axis < 3; ++axis) {
+            node.low[axis] = whole.low[axis];
+            node.high[axis] = whole.high[axis];
+        }
+        const auto left = [&] { node.left = build(halves[0], depth + 1) & 0x7fffffffu; };
+        std::uint32_t right_node = 0;
+        const auto right = [&] { right_node = build(halves[1], depth + 1); };
         if (range.count() > task_size) {
             tbb::parallel_invoke(left, right);
         } else {
             left();
             right();
         }
-        const BinaryNode &a = nodes_[node.left], &b = nodes_[node.right];
-        const float area = node.bounds.half_area();
+        node.right = right_node;
+        const Subtree self{range.first, range.count(), halves[1].first};
+        const auto a = self.left(tree_).cost(tree_), b = self.right(tree_).cost(tree_);
+        const float area = whole.half_area();
         const float as_node = area * node_cost + Share(a, b, width).cost;
         const float as_leaf = area * (leaf_cost + float(range.count()));
         node.leaf = range.count() <= BVH_MAX_LEAF && as_leaf <= as_node;
@@ -271,44 +313,64 @@ private:
         for (std::uint32_t slots = 2; slots < width; ++slots) {
             node.cost[slots - 1] = std::min(node.cost[slots - 2], Share(a, b, slots).cost);
         }
+        return halves[1].first;
     }
 
-    std::array<Range, 2> partition(const Range& range, const Slabs& slabs, const Bins& table, const Split& split,
-                                   int depth) {
-        const std::uint32_t middle = range.first + table.before(split.axis, split.slab);
+    std::array<Range, 2> partition(const Range& range, const Slabs& slabs, const Bins& table, const Split& split) {
+        const std::uint32_t before = table.before(split.axis, split.slab), middle = range.first + before;
         std::array<Range, 2> halves = {Range{range.first, middle}, Range{middle, range.last}};
-        std::array<std::uint32_t, 2> at = {range.first, middle};
-        for (const Primitive& primitive : primitives(depth, range)) {
+        const std::span<Primitive> here = primitives(range);
+        Primitive* const waiting = this->waiting(range);
+        const auto side_of = [&](const Primitive& primitive) {
             const Float4 centre = primitive.centre();
             const int side = slabs.of(centre)[split.axis] >= split.slab;
             halves[side].centres.grow(centre);
-            primitives_[(depth + 1) % 2][at[side]++] = primitive;
+            return side;
+        };
+        std::uint32_t waits = 0;
+        if (before >= range.count() - before) {
+            std::uint32_t kept = 0;
+            for (const Primitive& primitive : here) {
+                if (side_of(primitive) == 1) {
+                    waiting[waits++] = primitive;
+                } else {
+                    here[kept++] = primitive;
+                }
+            }
+            std::copy(waiting, waiting + waits, here.begin() + kept);
+        } else {
+            std::uint32_t kept = range.count();
+            for (std::uint32_t i = range.count(); i-- > 0;) {
+                if (side_of(here[i]) == 0) {
+                    waiting[waits++] = here[i];
+                } else {
+                    here[--kept] = here[i];
+                }
+            }
+            std::reverse_copy(waiting, waiting + waits, here.begin());
         }
         return halves;
     }
 
     /// No plane separates the centres, or the tree is too deep: halves by count along the longest axis.
-    std::array<Range, 2> halve(const Range& range, int depth) {
+    std::array<Range, 2> halve(const Range& range) {
         const Float4 extent = range.centres.high - range.centres.low;
         const int axis = extent[0] >= extent[1] && extent[0] >= extent[2] ? 0 : extent[1] >= extent[2] ? 1 : 2;
         const std::uint32_t middle = range.first + range.count() / 2;
         std::array<Range, 2> halves = {Range{range.first, middle}, Range{middle, range.last}};
-        std::ranges::copy(primitives(depth, range), primitives(depth + 1, range).begin());
-        const std::span<Primitive> both = primitives(depth + 1, range);
+        const std::span<Primitive> both = primitives(range);
         std::nth_element(
             both.begin(), both.begin() + range.count() / 2, both.end(), [&](const Primitive& a, const Primitive& b) {
                 return std::pair(float(a.centre()[axis]), a.index) < std::pair(float(b.centre()[axis]), b.index);
             });
         for (Range& half : halves) {
-            for (const Primitive& primitive : primitives(depth + 1, half)) half.centres.grow(primitive.centre());
+            for (const Primitive& primitive : primitives(half)) half.centres.grow(primitive.centre());
         }
         return halves;
     }
 
-    std::array<std::unique_ptr<Primitive[]>, 2> primitives_;
-    std::vector<std::uint32_t> order_;
-    std::unique_ptr<BinaryNode[]> nodes_;
-    std::atomic<std::uint32_t> next_ = 0;
+    BinaryTree tree_;
+    std::unique_ptr<Primitive[]> waiting_;
 };
 
 /// Largest q with origin + q * cell <= value, and smallest with >=, in the kernels' own float arithmetic.
@@ -327,10 +389,9 @@ std::uint32_t quantise_up(float value, float origin, float cell) {
 /// come in the order of their nodes.
 class Collapser {
 public:
-    Collapser(const BinaryNode* binary, std::span<const std::uint32_t> binary_order)
-        : nodes(1), binary_(binary), binary_order_(binary_order) {
-        order.reserve(binary_order.size());
-        stack = emit(0, 0);
+    Collapser(const BinaryTree& tree, std::uint32_t triangles) : nodes(1), tree_(tree) {
+        order.reserve(triangles);
+        stack = emit({0, triangles, tree.root}, 0);
     }
 
     std::vector<gpu::BvhNode> nodes;
@@ -339,15 +400,15 @@ public:
 
 private:
     /// Fills in node `index` from the binary node and adds all below; returns the nodes of which children can wait.
-    std::uint32_t emit(std::uint32_t root, std::uint32_t index) {
+    std::uint32_t emit(const Subtree& root, std::uint32_t index) {
         Children children;
-        if (binary_[root].leaf) {
+        if (root.leaf(tree_)) {
             children.add(root);
         } else {
             cut_halves(root, width, children);
         }
         const auto list = children.list();
-        const auto leaves = std::ranges::stable_partition(list, [&](std::uint32_t c) { return !binary_[c].leaf; });
+        const auto leaves = std::ranges::stable_partition(list, [&](const Subtree& c) { return !c.leaf(tree_); });
         const std::size_t inner = list.size() - leaves.size();
         const auto first = inner > 0 ? std::uint32_t(nodes.size()) : index;
         nodes.resize(nodes.size() + inner);
@@ -357,9 +418,9 @@ private:
         std::uint32_t* words = inner > 0 ? nodes[first].parent_leaves : nodes[index].leaves;
         words[0] = std::uint32_t(order.size());
         for (std::size_t c = inner; c < list.size(); ++c) {
-            const BinaryNode& leaf = binary_[list[c]];
+            const Subtree& leaf = list[c];
             words[1] |= ((std::uint32_t(order.size()) - words[0]) | leaf.count << 4) << (8 * c);
-            std::ranges::copy(binary_order_.subspan(leaf.first, leaf.count), std::back_inserter(order));
+            for (std::uint32_t i = 0; i < leaf.count; ++i) order.push_back(tree_.triangles[leaf.first + i].index);
         }
         std::uint32_t need = 0;
         for (std::uint32_t c = 0; c < inner; ++c) need = std::max(need, emit(list[c], first + c));
@@ -367,16 +428,16 @@ private:
     }
 
     struct Children {
-        std::array<std::uint32_t, width> node;
+        std::array<Subtree, width> subtree;
         int count = 0;
 
-        void add(std::uint32_t n) { node[count++] = n; }
-        std::span<std::uint32_t> list() { return {node.data(), std::size_t(count)}; }
+        void add(const Subtree& n) { subtree[count++] = n; }
+        std::span<Subtree> list() { return {subtree.data(), std::size_t(count)}; }
     };
 
-    /// Adds what the subtree of `n` becomes in at most so many slots of its parent.
-    void cut(std::uint32_t n, std::uint32_t slots, Children& children) const {
-        const auto& cost = binary_[n].cost;
+    /// Adds what the subtree becomes in at most so many slots of its parent.
+    void cut(const Subtree& n, std::uint32_t slots, Children& children) const {
+        const auto cost = n.cost(tree_);
         while (slots > 1 && cost[slots - 1] == cost[slots - 2]) --slots;  // fewer do as well
         if (slots == 1) {
             children.add(n);
@@ -385,17 +446,17 @@ private:
         }
     }
 
-    void cut_halves(std::uint32_t n, std::uint32_t slots, Children& children) const {
-        const BinaryNode& node = binary_[n];
-        const Share share(binary_[node.left], binary_[node.right], slots);
-        cut(node.left, share.left, children);
-        cut(node.right, slots - share.left, children);
+    void cut_halves(const Subtree& n, std::uint32_t slots, Children& children) const {
+        const Subtree left = n.left(tree_), right = n.right(tree_);
+        const Share share(left.cost(tree_), right.cost(tree_), slots);
+        cut(left, share.left, children);
+        cut(right, slots - share.left, children);
     }
 
-    void quantise(std::uint32_t index, std::span<const std::uint32_t> children) {
+    void quantise(std::uint32_t index, std::span<const Subtree> children) {
         gpu::BvhNode& node = nodes[index];
         Bounds whole = Bounds::nothing();
-        for (const std::uint32_t c : children) whole.grow(binary_[c].bounds);
+        for (const Subtree& c : children) whole.grow(c.bounds(tree_));
         node.origin = glm::vec3(whole.low[0], whole.low[1], whole.low[2]) - padding;
         const glm::vec3 high = glm::vec3(whole.high[0], whole.high[1], whole.high[2]) + padding;
         std::array<std::uint32_t*, 3> low_words = {&node.low_x, &node.low_y, &node.low_z};
@@ -406,15 +467,14 @@ private:
             const float cell = std::ldexp(1.0f, exponent);
             node.exponents |= std::uint32_t(exponent + 127) << (8 * axis);
             for (std::size_t c = 0; c < children.size(); ++c) {
-                const Bounds& bounds = binary_[children[c]].bounds;
+                const Bounds bounds = children[c].bounds(tree_);
                 *low_words[axis] |= quantise_down(bounds.low[axis] - padding, node.origin[axis], cell) << (8 * c);
                 *high_words[axis] |= quantise_up(bounds.high[axis] + padding, node.origin[axis], cell) << (8 * c);
             }
         }
     }
 
-    const BinaryNode* binary_;
-    std::span<const std::uint32_t> binary_order_;
+    const BinaryTree& tree_;
 };
 
 }  // namespace
@@ -426,8 +486,8 @@ Bvh build_bvh(std::span<const std::array<glm::vec3, 3>> triangles) {
         bvh.nodes.emplace_back();
         return bvh;
     }
-    const Builder builder(triangles);
-    Collapser collapser(builder.nodes(), builder.order());
+    const BinaryTree tree = Builder(triangles).take_tree();
+    Collapser collapser(tree, std::uint32_t(triangles.size()));
     return {std::move(collapser.nodes), std::move(collapser.order), std::max(1u, collapser.stack)};
 }
 

@@ -1,17 +1,22 @@
 #include "flat/coincidence.h"
 
 #include <algorithm>
+#include <bit>
+#include <cassert>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <memory>
 #include <tuple>
+#include <unordered_map>
 
 #include <boost/geometry/strategies/strategies.hpp>  // the tree needs it, and Boost 1.83 does not bring it along
+#include <boost/geometry/algorithms/intersects.hpp>
 #include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/point.hpp>
 #include <boost/geometry/index/rtree.hpp>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 namespace vkcppm {
@@ -51,28 +56,56 @@ bool has_normal(const Corners& c) {
     return glm::length(area_vector(c)) > double(std::numeric_limits<float>::epsilon()) * longest2;
 }
 
-/// Triangles in the order of their corners, from the least one on.
-struct SortedTriangles {
-    std::vector<Corners> keys;         // of all triangles
-    std::vector<std::uint32_t> order;  // of the same key, ascending
+std::uint64_t mixed(std::uint64_t x) {  // MurmurHash3's finaliser
+    x = (x ^ x >> 33) * 0xff51afd7ed558ccdu;
+    x = (x ^ x >> 33) * 0xc4ceb9fe1a85ec53u;
+    return x ^ x >> 33;
+}
 
-    explicit SortedTriangles(std::span<const Corners> corners) : order(corners.size()) {
-        keys.reserve(corners.size());
-        for (const Corners& c : corners) keys.push_back(from_least(c));
-        std::iota(order.begin(), order.end(), 0u);
-        tbb::parallel_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-            return is_before(keys[a], keys[b]) || (keys[a] == keys[b] && a < b);
-        });
+/// The same for the corners in any order, and for -0 as for 0.
+std::uint64_t hash_of(const Corners& c) {
+    std::uint64_t sum = 0;
+    for (const glm::vec3& p : c) {
+        std::uint64_t hash = 0;
+        for (int axis = 0; axis < 3; ++axis) hash = mixed(hash ^ std::bit_cast<std::uint32_t>(p[axis] + 0.0f));
+        sum += hash;
     }
+    return mixed(sum);
+}
 
-    /// The triangles with the corners of that key.
-    std::span<const std::uint32_t> equal(const Corners& key) const {
-        const auto first =
-            std::partition_point(order.begin(), order.end(), [&](std::uint32_t i) { return is_before(keys[i], key); });
-        const auto last = std::partition_point(first, order.end(), [&](std::uint32_t i) { return keys[i] == key; });
-        return {first, last};
-    }
+/// A triangle by its corners, from the least one on.
+struct Keyed {
+    Corners key;
+    std::uint32_t index;
 };
+
+/// Calls use(triangles) for every set of two or more that have the same three corners, in whatever order, and perhaps
+/// others with them: in the order of their keys, then of their indices. To sort a word for each triangle is all that it
+/// takes where there are few such.
+template <typename Use> void each_of_same_hash(std::span<const Corners> corners, Use use) {
+    constexpr int index_bits = 28;
+    constexpr std::uint64_t index_mask = (std::uint64_t(1) << index_bits) - 1;
+    assert(corners.size() <= index_mask);
+    const auto words = std::make_unique_for_overwrite<std::uint64_t[]>(corners.size());
+    const std::span<std::uint64_t> sorted(words.get(), corners.size());
+    tbb::parallel_for(std::size_t(0), corners.size(),
+                      [&](std::size_t i) { sorted[i] = (hash_of(corners[i]) & ~index_mask) | i; });
+    tbb::parallel_sort(sorted.begin(), sorted.end());
+    std::vector<Keyed> same;
+    for (std::size_t i = 0, end; i < sorted.size(); i = end) {
+        for (end = i + 1; end < sorted.size() && ((sorted[end] ^ sorted[i]) & ~index_mask) == 0;) ++end;
+        if (end - i < 2) continue;
+        same.clear();
+        for (std::size_t k = i; k < end; ++k) {
+            const auto index = std::uint32_t(sorted[k] & index_mask);
+            same.push_back({from_least(corners[index]), index});
+        }
+        std::ranges::sort(same, [](const Keyed& a, const Keyed& b) {
+            return is_before(a.key, b.key) || (a.key == b.key && a.index < b.index);
+        });
+        use(std::span<const Keyed>(same));
+    }
+}
 
 Box box_of(const Corners& c, float margin) {
     const glm::vec3 low = glm::min(c[0], glm::min(c[1], c[2])) - margin;
@@ -117,59 +150,100 @@ float position_error(const Corners& c) {
 }
 
 std::vector<std::uint32_t> distinct_triangles(std::span<const Corners> corners, std::span<const FaceTraits> faces) {
-    const SortedTriangles sorted(corners);
-    std::vector<std::uint32_t> kept;
-    for (std::size_t i = 0; i < sorted.order.size();) {
-        const Corners& key = sorted.keys[sorted.order[i]];
-        std::uint32_t chosen = sorted.order[i];
-        for (; i < sorted.order.size() && sorted.keys[sorted.order[i]] == key; ++i) {
-            if (faces[sorted.order[i]].emits && !faces[chosen].emits) chosen = sorted.order[i];
+    std::vector<std::uint8_t> is_kept(corners.size());
+    tbb::parallel_for(std::size_t(0), corners.size(),
+                      [&](std::size_t i) { is_kept[i] = has_normal(from_least(corners[i])); });
+    each_of_same_hash(corners, [&](std::span<const Keyed> same) {
+        for (std::size_t i = 0, end; i < same.size(); i = end) {
+            std::uint32_t chosen = same[i].index;
+            const bool keep = is_kept[chosen];
+            for (end = i; end < same.size() && same[end].key == same[i].key; ++end) {
+                is_kept[same[end].index] = false;
+                if (faces[same[end].index].emits && !faces[chosen].emits) chosen = same[end].index;
+            }
+            is_kept[chosen] = keep;
         }
-        if (has_normal(key)) kept.push_back(chosen);
+    });
+    std::vector<std::uint32_t> kept;
+    kept.reserve(std::size_t(std::ranges::count(is_kept, std::uint8_t(1))));
+    for (std::uint32_t i = 0; i < corners.size(); ++i) {
+        if (is_kept[i]) kept.push_back(i);
     }
-    std::sort(kept.begin(), kept.end());
     return kept;
 }
 
-void part_touching_faces(std::vector<Corners>& corners, std::span<const FaceTraits> faces) {
-    std::vector<float> shifts(corners.size(), 0.0f);  // towards the front
-    const auto move = [&](std::uint32_t i, std::uint32_t other, float side) {
-        const float gap = 2.0f * (position_error(corners[i]) + position_error(corners[other]));
-        if (gap > std::abs(shifts[i])) shifts[i] = side * gap;
-    };
+namespace {
 
-    const SortedTriangles sorted(corners);
-    for (std::uint32_t i = 0; i < corners.size(); ++i) {
-        if (faces[i].is_solid) continue;
-        for (const std::uint32_t twin : sorted.equal(reversed(corners[i]))) {
-            const bool same = faces[twin].material == faces[i].material && !faces[i].emits;
-            if (!faces[twin].is_solid && !same) move(i, twin, 1.0f);
-        }
-    }
+/// A triangle that may have to be moved off another one.
+struct Touching {
+    std::uint32_t movable;
+    std::uint32_t other;
+};
 
+/// The faces of solid glass and the lamps that lie on another face, wholly or in part, by the other face.
+std::vector<Touching> touching_faces(std::span<const Corners> corners, std::span<const FaceTraits> faces) {
     std::vector<Entry> movable;
     for (std::uint32_t i = 0; i < corners.size(); ++i) {
         if (faces[i].is_solid || faces[i].emits) {
             movable.emplace_back(box_of(corners[i], position_error(corners[i])), i);
         }
     }
+    if (movable.empty()) return {};
     const geometry::index::rtree<Entry, geometry::index::quadratic<16>> tree(movable);
-    for (std::uint32_t other = 0; other < corners.size(); ++other) {
-        const auto near = geometry::index::intersects(box_of(corners[other], position_error(corners[other])));
-        for (auto entry = tree.qbegin(near); entry != tree.qend(); ++entry) {
+    std::vector<Entry>().swap(movable);
+    const Box whole = tree.bounds();
+    const auto add = [&](std::uint32_t other, std::vector<Touching>& found) {
+        const Box box = box_of(corners[other], position_error(corners[other]));
+        if (!geometry::intersects(box, whole)) return;
+        for (auto entry = tree.qbegin(geometry::index::intersects(box)); entry != tree.qend(); ++entry) {
             const std::uint32_t i = entry->second;
             if (i == other || (!faces[i].is_solid && faces[other].emits)) continue;
             const double facing = glm::dot(area_vector(corners[i]), area_vector(corners[other]));
             if (faces[i].is_solid && facing >= 0.0) continue;
             const double tolerance = double(position_error(corners[i]) + position_error(corners[other]));
-            if (lies_on(corners[i], corners[other], tolerance)) move(i, other, faces[i].is_solid ? -1.0f : 1.0f);
+            if (lies_on(corners[i], corners[other], tolerance)) found.push_back({i, other});
         }
-    }
+    };
+    // Block by block, each with a list of its own, so that the order does not hang on the threads.
+    constexpr std::size_t block = 1 << 14;
+    std::vector<std::vector<Touching>> found((corners.size() + block - 1) / block);
+    tbb::parallel_for(std::size_t(0), found.size(), [&](std::size_t b) {
+        const std::size_t end = std::min(corners.size(), (b + 1) * block);
+        for (std::size_t other = b * block; other < end; ++other) add(std::uint32_t(other), found[b]);
+    });
+    std::vector<Touching> all;
+    for (const std::vector<Touching>& of_block : found) all.insert(all.end(), of_block.begin(), of_block.end());
+    return all;
+}
 
-    for (std::uint32_t i = 0; i < corners.size(); ++i) {
-        if (shifts[i] == 0.0f) continue;
-        const glm::vec3 shift = glm::vec3(unit_normal(corners[i]) * double(shifts[i]));
-        for (glm::vec3& corner : corners[i]) corner += shift;
+}  // namespace
+
+void part_touching_faces(std::span<Corners> corners, std::span<const FaceTraits> faces) {
+    std::unordered_map<std::uint32_t, float> shifts;  // towards the front
+    const auto move = [&](std::uint32_t i, std::uint32_t other, float side) {
+        const float gap = 2.0f * (position_error(corners[i]) + position_error(corners[other]));
+        float& shift = shifts[i];
+        if (gap > std::abs(shift)) shift = side * gap;
+    };
+    each_of_same_hash(corners, [&](std::span<const Keyed> same) {
+        for (const auto& [key, i] : same) {
+            if (faces[i].is_solid) continue;
+            const Corners back = reversed(key);
+            const auto first =
+                std::ranges::partition_point(same, [&](const Keyed& k) { return is_before(k.key, back); });
+            for (auto twin = first; twin != same.end() && twin->key == back; ++twin) {
+                const FaceTraits& other = faces[twin->index];
+                const bool alike = other.material == faces[i].material && !faces[i].emits;
+                if (!other.is_solid && !alike) move(i, twin->index, 1.0f);
+            }
+        }
+    });
+    for (const Touching& pair : touching_faces(corners, faces)) {
+        move(pair.movable, pair.other, faces[pair.movable].is_solid ? -1.0f : 1.0f);
+    }
+    for (const auto& [i, shift] : shifts) {
+        const glm::vec3 offset = glm::vec3(unit_normal(corners[i]) * double(shift));
+        for (glm::vec3& corner : corners[i]) corner += offset;
     }
 }
 

@@ -32,6 +32,6 @@ std::vector<std::uint32_t> distinct_triangles(std::span<const Corners> corners, 
 /// another face, wholly or in part, goes into its solid, so that there is a thin gap of air as between any two bodies;
 /// a lamp in the plane of what it lies on goes to its front, and so do the two sides of an opaque sheet, triangles with
 /// the same corners that differ. O(n log n) where few lie on many.
-void part_touching_faces(std::vector<Corners>& corners, std::span<const FaceTraits> faces);
+void part_touching_faces(std::span<Corners> corners, std::span<const FaceTraits> faces);
 
 }  // namespace vkcppm

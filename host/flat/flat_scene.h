@@ -16,11 +16,12 @@
 
 namespace vkcppm {
 
+/// Of all that is listed by triangle and by texel, what is on the device need not be here any more.
 struct FlatScene {
     SceneFrame frame;
     Bvh bvh;
     std::vector<gpu::TriangleGeometry> triangles;  // in leaf order, as all that is listed by triangle
-    std::vector<Triangle> sources;                 // of the scene, corners in the order in which kernels see them
+    std::vector<std::uint8_t> first_corner;        // of the scene's triangle that kernels see first
     std::vector<gpu::TriangleShading> shading;
     std::vector<glm::vec4> texcoords;       // [3 x triangles] both sets of a corner, where there are textures
     std::vector<glm::uvec4> vertex_colors;  // [2 x triangles] 4 half floats a corner, then 2 unused words
@@ -43,5 +44,8 @@ struct FlatScene {
     glm::vec3 low{0.0f};                        // bounds of the triangles, padded
     glm::vec3 high{0.0f};
 };
+
+/// The triangle of the scene that is the flat scene's `triangle`, its corners in the order in which kernels see them.
+Triangle source_of(const Scene& scene, const FlatScene& flat, std::size_t triangle);
 
 }  // namespace vkcppm

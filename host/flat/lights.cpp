@@ -51,7 +51,7 @@ void add_emitters(const Scene& scene, const FlatScene& flat, std::vector<Weighed
         const double area = 0.5 * glm::length(glm::cross(glm::dvec3(triangle.e1), glm::dvec3(triangle.e2)));
         light.power = glm::vec3(glm::dvec3(surface.emission) * (pi * area * (light.double_sided ? 2.0 : 1.0)));
         if (surface.texture[TEXTURE_EMISSIVE] != 0 || (surface.flags & (SURFACE_MASK | SURFACE_BLEND)) != 0) {
-            const Triangle& source = flat.sources[i];
+            const Triangle source = source_of(scene, flat, i);
             add_textured_emitter(scene, source, light, lights, means[source.material]);
         } else {
             lights.push_back({light, mean_channel(glm::dvec3(light.power))});

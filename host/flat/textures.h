@@ -2,6 +2,7 @@
 // The images of a scene as the kernels read them: words in one buffer, and a record for each way of looking one up.
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <glm/vec4.hpp>
@@ -20,7 +21,7 @@ public:
 
     const std::vector<gpu::TextureLookup>& lookups() const { return lookups_; }
     /// Images that are looked up, one after the other, a word a texel (red in the lowest byte).
-    const std::vector<std::uint32_t>& texels() const { return texels_; }
+    std::vector<std::uint32_t> take_texels() { return std::move(texels_); }
 
 private:
     const Scene& scene_;

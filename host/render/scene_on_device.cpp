@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -38,22 +39,37 @@ void set_camera(gpu::Params& params, const Camera& camera, const SceneFrame& fra
     params.pixel_radius = float(2.0 * half_height / double(size.height) / std::sqrt(std::numbers::pi));
 }
 
+/// Empties it and gives back its memory, which an assignment of {} keeps.
+template <typename T> void release(std::vector<T>& values) { std::vector<T>().swap(values); }
+
 }  // namespace
 
 SceneOnDevice::SceneOnDevice(Device& device, const FlatScene& scene) : device_(device), scene_(scene) {
-    if (scene.bvh.nodes.size() > std::size_t(1) << BVH_MAX_NODE_BITS) {
-        throw Error(ExitCode::out_of_device_memory,
-                    fmt::format("the scene's {} triangles need {} nodes of a BVH, the kernels hold {}",
-                                scene.triangles.size(), scene.bvh.nodes.size(), 1u << BVH_MAX_NODE_BITS));
-    }
-    const auto upload = [&]<typename T>(Binding binding, const std::vector<T>& data) {
-        const auto at = buffers_.emplace(binding, Buffer(device, binding, data.size() * sizeof(T))).first;
-        at->second.upload(data);
-    };
-    upload(Binding::nodes, scene.bvh.nodes);
-#define UPLOAD(number, name, Element, per, entries, access, life, hashed) upload(Binding::name, scene.name);
+    put(Binding::nodes, scene.bvh.nodes);
+#define UPLOAD(number, name, Element, per, entries, access, life, hashed) put(Binding::name, scene.name);
     SCENE_BUFFERS(UPLOAD)
 #undef UPLOAD
+}
+
+SceneOnDevice::SceneOnDevice(Device& device, FlatScene&& scene)
+    : device_(device), own_(std::move(scene)), scene_(own_) {
+    release(own_.bvh.order);
+    release(own_.first_corner);
+#define UPLOAD(number, name, Element, per, entries, access, life, hashed) \
+    put(Binding::name, own_.name);                                        \
+    if (Per::per == Per::triangle || Per::per == Per::texel || Per::per == Per::sky_pixel) release(own_.name);
+    SCENE_BUFFERS(UPLOAD)
+#undef UPLOAD
+    put(Binding::nodes, own_.bvh.nodes);
+}
+
+template <typename T> void SceneOnDevice::put(Binding binding, const std::vector<T>& data) {
+    if (binding == Binding::nodes && data.size() > std::size_t(1) << BVH_MAX_NODE_BITS) {
+        throw Error(ExitCode::out_of_device_memory,
+                    fmt::format("the scene needs {} nodes of a BVH, the kernels hold {}", data.size(),
+                                1u << BVH_MAX_NODE_BITS));
+    }
+    buffers_.emplace(binding, Buffer(device_, binding, data.size() * sizeof(T))).first->second.upload(data);
 }
 
 void SceneOnDevice::lend(Buffers& buffers) const {

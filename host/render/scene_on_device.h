@@ -17,6 +17,8 @@ class SceneOnDevice {
 public:
     /// Uploads the scene, which must outlive this. Throws Error(out_of_device_memory) where it does not fit the device.
     SceneOnDevice(Device& device, const FlatScene& scene);
+    /// The same, and keeps of it but what is not one for each of many: triangles and texels are gone from the host.
+    SceneOnDevice(Device& device, FlatScene&& scene);
     SceneOnDevice(const SceneOnDevice&) = delete;  // renderers point into it
     SceneOnDevice& operator=(const SceneOnDevice&) = delete;
 
@@ -27,7 +29,10 @@ public:
     void lend(Buffers& buffers) const;
 
 private:
+    template <typename T> void put(Binding binding, const std::vector<T>& data);
+
     Device& device_;
+    FlatScene own_;
     const FlatScene& scene_;
     std::map<Binding, Buffer> buffers_;
 };

@@ -102,7 +102,7 @@ TEST(Coincidence, NeedlesStartAtTheirShortEdge) {
         EXPECT_GT(sine, 0.5) << "triangle " << i;
         for (int c = 0; c < 3; ++c) {
             const glm::vec3 corner = c == 0 ? g.v0 : g.v0 + (c == 1 ? g.e1 : g.e2);
-            const glm::dvec3 want = flat.frame.point(scene.positions[flat.sources[i].vertex[c]]);
+            const glm::dvec3 want = flat.frame.point(scene.positions[source_of(scene, flat, i).vertex[c]]);
             EXPECT_LT(glm::distance(glm::dvec3(corner), want), 1e-6) << "triangle " << i << ", corner " << c;
         }
     }

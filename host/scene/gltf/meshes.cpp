@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <tiny_gltf.h>
 
+#include "core/process.h"
 #include "scene/bad_scene.h"
 #include "scene/gltf/limits.h"
 #include "scene/gltf/materials.h"
@@ -29,6 +30,10 @@ struct Vertex {
     std::optional<glm::vec4> tangent;
 };
 
+// That each triangle takes at least while its BVH is built: in the scene 16, its corners 36, its box, its place and its
+// node 76 (host/flat/bvh.cpp).
+constexpr std::size_t bytes_a_triangle = 128;
+
 const glm::vec2 no_uv(0.0f);
 const glm::vec4 white(1.0f);
 const glm::vec4 no_tangent(0.0f);
@@ -38,6 +43,12 @@ template <typename T> void append(std::vector<T>& values, std::size_t i, const s
     if (values.empty() && !value) return;
     values.resize(i, none);
     values.push_back(value.value_or(none));
+}
+
+/// Room for `more` values, in steps that grow, as many small additions must not copy all each time.
+template <typename T> void reserve_more(std::vector<T>& values, std::size_t more) {
+    const std::size_t needed = values.size() + more;
+    if (needed > values.capacity()) values.reserve(std::max(needed, values.capacity() * 3 / 2));
 }
 
 template <typename T> std::optional<T> element(const std::vector<T>& values, std::size_t i) {
@@ -94,6 +105,11 @@ private:
             check_total(all_primitives += count * model_.meshes[mesh].primitives.size(), max_primitives, "primitives",
                         file_);
         }
+        const std::size_t needed = all_triangles * bytes_a_triangle, there = available_memory();
+        if (needed <= there) return;
+        bad_scene(file_.name, "the number of triangles", fmt::to_string(all_triangles),
+                  fmt::format("they need {} MB of memory, there are {} MB, enough for {}", needed / 1000000,
+                              there / 1000000, there / bytes_a_triangle));
     }
 
     void add_node(const PlacedNode& node) {
@@ -159,6 +175,12 @@ private:
         return vertex;
     }
 
+    /// For so many vertices more: one large primitive then takes no more than it needs.
+    void make_room(std::size_t vertices) {
+        reserve_more(scene_.positions, vertices);
+        reserve_more(scene_.normals, vertices);
+    }
+
     std::uint32_t add_vertex(const Vertex& vertex) {
         const std::size_t i = scene_.positions.size();
         check_total(i + 1, max_vertices, "vertices", file_);
@@ -184,6 +206,7 @@ private:
         const auto [block, is_new] = blocks.try_emplace({local.positions.get(), local.normals.get(), local.uv[0].get(),
                                                          local.uv[1].get(), local.colors.get(), local.tangents.get()},
                                                         scene_.positions.size());
+        if (is_new) make_room(local.positions->size());
         for (std::size_t i = 0; is_new && i < local.positions->size(); ++i) {
             Vertex vertex = placed(local, i, node, placement);
             vertex.normal = placement.normal((*local.normals)[i]);
@@ -207,6 +230,7 @@ private:
 
     void add_smooth(const LocalPrimitive& local, const Placement& placement, std::uint32_t material,
                     std::size_t first) {
+        reserve_more(scene_.triangles, local.triangles.size());
         for (const CornerIndices& corners : local.triangles) {
             Triangle triangle{wound(corners, placement), material};
             std::array<glm::dvec3, 3> p;
@@ -227,6 +251,8 @@ private:
 
     /// Three vertices a triangle with its own normal, as glTF 2.0, section 3.7.2.1, asks for where NORMAL is missing.
     void add_flat(const LocalPrimitive& local, int node, const Placement& placement, std::uint32_t material) {
+        make_room(3 * local.triangles.size());
+        reserve_more(scene_.triangles, local.triangles.size());
         for (const CornerIndices& corners : local.triangles) {
             Triangle triangle{wound(corners, placement), material};
             std::array<Vertex, 3> vertices;

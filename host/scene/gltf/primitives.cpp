@@ -21,6 +21,7 @@ std::vector<CornerIndices> assemble_triangles(int mode, const std::vector<std::u
     std::vector<CornerIndices> triangles;
     const std::size_t n = indices.size();
     if (mode == TINYGLTF_MODE_TRIANGLES) {
+        triangles.reserve(n / 3);
         for (std::size_t i = 0; i + 2 < n; i += 3) triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
     } else if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
         for (std::size_t i = 0; i + 2 < n; ++i) {
