@@ -1,6 +1,9 @@
 #include "scene/gltf/images.h"
 
 #include <stdexcept>
+#include <utility>
+
+#include <tbb/parallel_for.h>
 
 #include "scene/bad_scene.h"
 #include "scene/gltf/limits.h"
@@ -28,24 +31,28 @@ std::optional<std::uint32_t> GltfImages::index(std::size_t image) {
     if (!is_new) return found->second;
 
     if (has_view) {
-        found->second = decode(views_.bytes(source["bufferView"].get<std::size_t>()), name, object);
-    } else {
-        std::string why;
-        const std::optional<Bytes> bytes = read_uri(uri, max_gltf_bytes, object + ".uri", file_.name, hash_, why);
-        if (!bytes) {
-            warnings_.add("its textures are ignored, the image is absent", fmt::format("{} ({})", object, why));
-        } else if (is_data_uri(uri)) {
-            found->second = decode(*bytes, name, object);
-        } else {
-            found->second = decode(*bytes, name.empty() ? uri : name, fmt::format("{} ({})", object, json_text(uri)));
-        }
+        found->second = add({name, object, {}, views_.bytes(source["bufferView"].get<std::size_t>())});
+        return found->second;
     }
+    std::string why;
+    std::optional<Bytes> bytes = read_uri(uri, max_gltf_bytes, object + ".uri", file_.name, hash_, why);
+    if (!bytes) {
+        warnings_.add("its textures are ignored, the image is absent", fmt::format("{} ({})", object, why));
+        return found->second;
+    }
+    Source own{name, object, std::move(*bytes), {}};
+    if (!is_data_uri(uri)) {
+        if (name.empty()) own.name = uri;
+        own.object = fmt::format("{} ({})", object, json_text(uri));
+    }
+    own.bytes = own.own_bytes;
+    found->second = add(std::move(own));
     return found->second;
 }
 
-/// The place of the picture in `bytes` among those decoded; none, with a warning, where its format is foreign.
-std::optional<std::uint32_t> GltfImages::decode(std::span<const std::uint8_t> bytes, const std::string& name,
-                                                const std::string& object) {
+/// The place of the picture among those to decode; none, with a warning, where its format is foreign.
+std::optional<std::uint32_t> GltfImages::add(Source source) {
+    const auto& [name, object, own_bytes, bytes] = source;
     if (const std::string_view format = foreign_format(bytes); !format.empty()) {
         warnings_.add(fmt::format("its textures are ignored, this program lacks {}", format), object);
         return std::nullopt;
@@ -62,14 +69,32 @@ std::optional<std::uint32_t> GltfImages::decode(std::span<const std::uint8_t> by
                 file_.name, "the size of " + object, fmt::format("{} x {}", size.width, size.height),
                 fmt::format("its {} bytes hold {} texels at most", bytes.size(), max_texels_per_byte * bytes.size()));
         }
-        check_total(texels_ += size.pixels(), max_texels, "texels, with those of " + object, file_.name);
-        images_.push_back({name, size, decode_picture(bytes)});
+        bytes_ += bytes.size();
+        check_total(texels_ += size.pixels(), max_texels(bytes_), "texels, with those of " + object, file_.name);
+        images_.push_back({name, size, {}});
+        sources_.push_back(std::move(source));
         return std::uint32_t(images_.size() - 1);
     } catch (const Error&) {
         throw;
     } catch (const std::runtime_error& error) {
         bad_scene(file_.name, object, "unreadable", error.what());
     }
+}
+
+std::vector<TextureImage> GltfImages::take_images() {
+    std::vector<std::string> broken(images_.size());  // why; empty: it is not
+    tbb::parallel_for(std::size_t(0), images_.size(), [&](std::size_t i) {
+        try {
+            images_[i].rgba = decode_picture(sources_[i].bytes);
+            Bytes().swap(sources_[i].own_bytes);
+        } catch (const std::runtime_error& error) {
+            broken[i] = error.what();
+        }
+    });
+    for (std::size_t i = 0; i < broken.size(); ++i) {
+        if (!broken[i].empty()) bad_scene(file_.name, sources_[i].object, "unreadable", broken[i]);
+    }
+    return std::move(images_);
 }
 
 }  // namespace vkcppm

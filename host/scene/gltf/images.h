@@ -20,29 +20,37 @@ public:
     /// Keeps all three.
     GltfImages(const GltfFile& file, GltfViews& views, Warnings& warnings);
 
-    /// The place of images[i] among those decoded, which it is on its first use; images with one source share it. None,
-    /// with a warning, where its file is not there or in a format that only an extension allows (KTX2, WebP, DDS):
-    /// the factor alone is a picture that still says something.
+    /// The place of images[i] among those to decode, the next one on its first use; images with one source share it.
+    /// None, with a warning, where its file is not there or in a format that only an extension allows (KTX2, WebP,
+    /// DDS): the factor alone is a picture that still says something.
     /// Throws Error(bad_scene) where the image has no source or two, lies outside of the scene's folder, is broken, or
     /// is too large, alone or with the others.
     std::optional<std::uint32_t> index(std::size_t image);
 
-    /// Hands over what was decoded, in the order of index().
-    std::vector<TextureImage> take_images() { return std::move(images_); }
+    /// Decodes all, each once, on all cores, and hands them over in the order of index(). Throws Error(bad_scene) where
+    /// one is broken: the first.
+    std::vector<TextureImage> take_images();
 
     /// FNV-1a of the file's hash and of each external image's bytes.
     std::uint64_t hash() const { return hash_; }
 
 private:
-    std::optional<std::uint32_t> decode(std::span<const std::uint8_t> bytes, const std::string& name,
-                                        const std::string& object);
+    /// A picture that is not decoded yet.
+    struct Source {
+        std::string name;
+        std::string object;  // what it is in the file, for messages
+        std::vector<std::uint8_t> own_bytes;
+        std::span<const std::uint8_t> bytes;  // those, or of a bufferView
+    };
+    std::optional<std::uint32_t> add(Source source);
 
     const GltfFile& file_;
     GltfViews& views_;
     Warnings& warnings_;
-    std::vector<TextureImage> images_;
+    std::vector<TextureImage> images_;  // without texels until they are taken
+    std::vector<Source> sources_;       // of each
     std::map<std::string, std::optional<std::uint32_t>> by_source_;
-    std::size_t texels_ = 0;
+    std::size_t bytes_ = 0, texels_ = 0;  // of all so far
     std::uint64_t hash_;
 };
 

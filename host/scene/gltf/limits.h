@@ -26,11 +26,15 @@ constexpr Expansion max_primitives{256, std::size_t(1) << 24};   // of all insta
 constexpr Expansion max_instances{256, std::size_t(1) << 24};    // of meshes
 constexpr Expansion max_read_vectors{16, std::size_t(1) << 27};  // of all accessors together
 constexpr Expansion max_decoded_bytes{64, max_gltf_bytes};       // of all compressed bufferViews: the best of meshopt
-constexpr std::size_t max_texels = std::size_t(1) << 26;         // of all images together
 constexpr std::size_t max_image_side = 16384;                    // texels
 constexpr std::size_t max_texels_per_byte = 8256;                // of an image: Deflate's 1032 to 1, of 1-bit texels
 constexpr double max_coordinate = FLT_MAX;                       // m; its square is finite in double
 constexpr double max_uv = 1 << 24;  // of texture coordinates and their transform: float has no fraction beyond
+
+/// Texels of all images together: 2^26, and of larger files 64 for each of their bytes, up to 2^29.
+constexpr std::size_t max_texels(std::size_t bytes) {
+    return std::clamp(64 * bytes, std::size_t(1) << 26, std::size_t(1) << 29);
+}
 
 /// Throws Error(bad_scene) where `total` is above `limit`, e.g. "the number of triangles is 9; the limit is 8".
 inline void check_total(std::size_t total, std::size_t limit, std::string_view what, std::string_view file) {
