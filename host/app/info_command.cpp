@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <iterator>
 #include <numbers>
 #include <optional>
@@ -19,6 +21,7 @@
 #include "flat/features.h"
 #include "flat/flatten.h"
 #include "flat/surface.h"
+#include "render/memory.h"
 
 namespace vkcppm {
 namespace {
@@ -121,6 +124,52 @@ Json json_of(const Environment& environment) {
             {"mean_radiance", json_of(mean_radiance(environment))}};
 }
 
+/// What a render takes.
+struct Memory {
+    std::string device;
+    std::uint64_t device_bytes = 0;  // that it has
+    Extent size;
+    std::vector<MemoryReport> needed;
+};
+
+std::optional<Memory> memory_of(const InfoOptions& options, const Scene& scene, const FlatScene& flat) {
+    if (!options.memory) return std::nullopt;
+    const Settings settings = resolve_settings(options.settings, scene);
+    const Device device(options.device);
+    return Memory{device.info().name, device.info().memory_bytes, *settings.size,
+                  memory_needed(flat, settings, device)};
+}
+
+std::uint64_t sum_of(const std::vector<MemoryReport>& memory) {
+    std::uint64_t sum = 0;
+    for (const MemoryReport& row : memory) sum += row.bytes;
+    return sum;
+}
+
+Json json_of(const Memory& memory) {
+    Json json{{"device", memory.device},        {"device_memory_bytes", memory.device_bytes},
+              {"width", memory.size.width},     {"height", memory.size.height},
+              {"bytes", sum_of(memory.needed)}, {"of", Json::array()}};
+    for (const MemoryReport& row : memory.needed) {
+        json["of"].push_back({{"of", row.of},
+                              {"count", row.count},
+                              {"bytes_each", double(row.bytes) / double(std::max<std::uint64_t>(row.count, 1))},
+                              {"bytes", row.bytes}});
+    }
+    return json;
+}
+
+std::string text_of(const Memory& memory) {
+    std::string text =
+        fmt::format("a render of {}x{} takes {:.1f} MB of the {:.0f} MB of {}\n", memory.size.width, memory.size.height,
+                    double(sum_of(memory.needed)) * 1e-6, double(memory.device_bytes) * 1e-6, memory.device);
+    for (const MemoryReport& row : memory.needed) {
+        fmt::format_to(std::back_inserter(text), "  {}: {} times {:.1f} bytes, {:.1f} MB\n", row.of, row.count,
+                       double(row.bytes) / double(std::max<std::uint64_t>(row.count, 1)), double(row.bytes) * 1e-6);
+    }
+    return text;
+}
+
 Json json_of(const Scene& scene, const std::vector<Feature>& features) {
     Json json;
     json["scene"] = scene.file.string();
@@ -207,8 +256,15 @@ std::string plain_text(const Scene& scene, const std::vector<Feature>& features)
 void execute(const InfoOptions& options) {
     const Scene scene = load_scene(options.scene);
     print_warnings(scene.warnings);
-    const std::vector<Feature> features = flatten(scene).features;
-    print_result(options.json ? json_text(json_of(scene, features), 2) + "\n" : plain_text(scene, features));
+    const FlatScene flat = flatten(scene);
+    const std::optional<Memory> memory = memory_of(options, scene, flat);
+    if (options.json) {
+        Json json = json_of(scene, flat.features);
+        if (memory) json["memory"] = json_of(*memory);
+        print_result(json_text(json, 2) + "\n");
+    } else {
+        print_result(plain_text(scene, flat.features) + (memory ? text_of(*memory) : ""));
+    }
 }
 
 }  // namespace vkcppm

@@ -317,6 +317,11 @@ void declare(CLI::App& app, CompareOptions& options) {
 
 void declare(CLI::App& app, InfoOptions& options) {
     add_scene(app, options.scene);
+    app.add_flag("--memory", options.memory, "And what a render takes on the device, bytes by kind");
+    for (const char* name : {"estimator", "photons", "size", "knn", "rings", "sectors", "aovs"}) {
+        add_setting(app, options.settings, name, "As of a render, for --memory");
+    }
+    app.add_option("--device", options.device.select, "As of a render, for --memory")->type_name("NAME|INDEX|uuid:...");
     app.add_flag("--json", options.json, "Print JSON");
 }
 

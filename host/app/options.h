@@ -76,6 +76,9 @@ struct RaceOptions {
 /// vkcppm info SCENE
 struct InfoOptions {
     SceneOptions scene;
+    bool memory = false;  // what a render with these settings takes on this device is told as well
+    Settings settings;
+    Device::Options device;
     bool json = false;
 };
 

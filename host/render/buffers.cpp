@@ -25,10 +25,13 @@ constexpr auto rows = std::to_array<BufferRow>({
 namespace {
 
 constexpr std::uint64_t empty_bytes = 16;  // of a buffer that holds nothing
+// Pixels of a band at most: with so many the device is as busy as with more, which would only take memory.
+constexpr std::uint64_t most_band_pixels = 1u << 20;
 
 std::uint64_t things(Per per, const Counts& counts) {
     switch (per) {
-        case Per::pixel: return counts.pixels;
+        case Per::pixel:
+        case Per::band_pixel: return counts.bands.each;
         case Per::photon_slot: return counts.photon_slots;
         case Per::photon_lane: return counts.photon_lanes;
         case Per::counter: return counts.counters;
@@ -63,6 +66,7 @@ std::uint64_t each(Entries entries, const Counts& counts) {
 const char* name_of(Per per) {
     switch (per) {
         case Per::pixel: return "pixel";
+        case Per::band_pixel: return "pixel of a band";
         case Per::photon_slot: return "photon slot";
         case Per::photon_lane: return "lane of light paths";
         case Per::counter: return "counter of the grid";
@@ -85,6 +89,19 @@ std::uint64_t entries_of(const BufferRow& row, const Counts& counts) {
     return things(row.per, counts) * each(row.entries, counts);
 }
 
+Bands bands_of(std::uint64_t pixels, const Counts& counts, const Device& device, std::uint64_t most) {
+    if (most == 0) most = most_band_pixels;
+    for (const BufferRow& row : gpu::rows) {
+        if (row.per != Per::pixel && row.per != Per::band_pixel) continue;
+        const std::uint64_t bytes = row.element_bytes * each(row.entries, counts);  // a pixel
+        // Buffers are whole texels.
+        if (bytes > 0) most = std::min(most, (device.largest_buffer(bound_buffer(row.binding).access) - 15) / bytes);
+    }
+    most = std::max<std::uint64_t>(most, 1);
+    const std::uint64_t bands = std::max<std::uint64_t>((pixels + most - 1) / most, 1);
+    return {pixels, (pixels + bands - 1) / bands};
+}
+
 void Buffers::allocate(Binding binding, std::uint64_t entries) {
     allocate_bytes(binding, entries * gpu::rows[std::size_t(binding)].element_bytes);
 }
@@ -92,9 +109,16 @@ void Buffers::allocate(Binding binding, std::uint64_t entries) {
 void Buffers::allocate_bytes(Binding binding, std::uint64_t bytes) {
     const auto put = [&](std::uint64_t size) {
         // The old one first: there may not be room for both.
-        buffers_.erase(binding);
         lent_.erase(binding);
-        bindings_.bind(binding, buffers_.emplace(binding, Buffer(device_, binding, size)).first->second);
+        std::vector<Buffer>& buffers = buffers_[binding];
+        buffers.clear();
+        if (gpu::rows[std::size_t(binding)].per != Per::pixel) {
+            bindings_.bind(binding, buffers.emplace_back(device_, binding, size));
+            return;
+        }
+        for (std::uint32_t band = 0; band < bindings_.sets(); ++band) {
+            bindings_.bind(binding, buffers.emplace_back(device_, binding, size), band);
+        }
     };
     try {
         put(bytes);
@@ -110,25 +134,28 @@ void Buffers::lend(Binding binding, const Buffer& buffer) {
     lent_[binding] = &buffer;
 }
 
-std::map<Binding, const Buffer*> Buffers::all() const {
-    std::map<Binding, const Buffer*> all = lent_;
-    for (const auto& [binding, buffer] : buffers_) all[binding] = &buffer;
-    return all;
+std::map<Binding, std::uint64_t> Buffers::bytes() const {
+    std::map<Binding, std::uint64_t> bytes;
+    for (const auto& [binding, buffer] : lent_) bytes[binding] = buffer->bytes();
+    for (const auto& [binding, buffers] : buffers_) {
+        for (const Buffer& buffer : buffers) bytes[binding] += buffer.bytes();
+    }
+    return bytes;
 }
 
-std::vector<MemoryReport> memory_of(const Buffers& buffers) {
+std::vector<MemoryReport> memory_of(const std::map<Binding, std::uint64_t>& all, std::uint32_t bands) {
     std::map<Per, MemoryReport> memory;
     MemoryReport rest{name_of(Per::rest), 1, 0};
-    for (const auto& [binding, buffer] : buffers.all()) {
+    for (const auto& [binding, bytes] : all) {
         const BufferRow& row = gpu::rows[std::size_t(binding)];
-        if (row.per == Per::rest || buffer->bytes() <= empty_bytes) {
-            rest.bytes += buffer->bytes();
+        if (row.per == Per::rest || bytes <= empty_bytes * (row.per == Per::pixel ? bands : 1)) {
+            rest.bytes += bytes;
             continue;
         }
-        // The first row of what it has entries for tells how many there are.
-        const auto [report, first] =
-            memory.try_emplace(row.per, MemoryReport{name_of(row.per), buffer->bytes() / row.element_bytes, 0});
-        report->second.bytes += buffer->bytes();
+        MemoryReport& report = memory.try_emplace(row.per, MemoryReport{name_of(row.per), 0, 0}).first->second;
+        const bool tells = row.entries == Entries::one || row.entries == Entries::uploaded;
+        if (tells && report.count == 0) report.count = bytes / row.element_bytes;
+        report.bytes += bytes;
     }
     std::vector<MemoryReport> reports;
     for (auto& [per, report] : memory) reports.push_back(std::move(report));

@@ -2,6 +2,7 @@
 // The device's buffers of one renderer, by the rows of shaders/shared/buffers.h: how large each is, what an iteration
 // leaves to the next, what memory they take.
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -16,9 +17,11 @@
 
 namespace vkcppm {
 
-/// What a buffer has entries for. The first row of each has exactly one entry for each.
+/// What a buffer has entries for. The first row of each that is not there for some features alone has exactly one entry
+/// for each.
 enum class Per {
-    pixel,
+    pixel,       // of the picture: a buffer for every band of it
+    band_pixel,  // of a band
     photon_slot,
     photon_lane,
     counter,
@@ -62,9 +65,19 @@ struct BufferRow {
 /// All rows, in the order of their bindings.
 std::span<const BufferRow> buffer_rows();
 
+/// A picture that is gone through in bands of as many pixels, of which the last may be smaller: their number, whatever
+/// the picture's, fits the device's buffers, and what an iteration makes anew is there for one band alone.
+struct Bands {
+    std::uint64_t pixels = 0;  // of the picture
+    std::uint64_t each = 0;    // of a band
+    std::uint32_t count() const { return each == 0 ? 0 : std::uint32_t((pixels + each - 1) / each); }
+    std::uint64_t first(std::uint32_t band) const { return band * each; }
+    std::uint64_t size(std::uint32_t band) const { return std::min(each, pixels - first(band)); }
+};
+
 /// What the sizes of a renderer's buffers follow from.
 struct Counts {
-    std::uint64_t pixels = 0;
+    Bands bands;
     std::uint64_t photon_slots = 0;
     std::uint64_t photon_lanes = 0;
     std::uint64_t counters = 0;
@@ -78,15 +91,21 @@ struct Counts {
     bool traced = false;
 };
 
-/// Entries of a row; 0 for one that is uploaded.
+/// Entries of a buffer of a row, of each of them where the row has one for every band; 0 for one that is uploaded.
 std::uint64_t entries_of(const BufferRow& row, const Counts& counts);
 
-/// The buffers of one renderer. Each is bound as long as it lives.
+/// Bands of a picture of so many pixels: one, unless it is large or has more than a buffer of the device holds. most:
+/// pixels of a band at most, 0: what is best.
+Bands bands_of(std::uint64_t pixels, const Counts& counts, const Device& device, std::uint64_t most = 0);
+
+/// The buffers of one renderer. Each is bound as long as it lives: in all descriptor sets, of which there is one for
+/// every band of the picture, but where every band has a buffer of its own.
 class Buffers {
 public:
     Buffers(Device& device, Bindings& bindings) : device_(device), bindings_(bindings) {}
 
-    /// A buffer of `entries` zeros, in place of what stood there. Throws Error(out_of_device_memory).
+    /// A buffer, or one for every band, of `entries` zeros, in place of what stood there. Throws
+    /// Error(out_of_device_memory).
     void allocate(Binding binding, std::uint64_t entries);
 
     /// The rows that `takes` says, each with the entries that follow from the counts.
@@ -105,23 +124,23 @@ public:
     /// Binds a buffer that lives elsewhere.
     void lend(Binding binding, const Buffer& buffer);
 
-    /// There must be one of its own: not one that was lent.
-    Buffer& at(Binding binding) { return buffers_.at(binding); }
-    const Buffer& at(Binding binding) const { return buffers_.at(binding); }
+    /// There must be one of its own: not one that was lent. band: of those of which every band has one.
+    Buffer& at(Binding binding, std::uint32_t band = 0) { return buffers_.at(binding).at(band); }
+    const Buffer& at(Binding binding, std::uint32_t band = 0) const { return buffers_.at(binding).at(band); }
 
-    /// All of them, and those that were lent.
-    std::map<Binding, const Buffer*> all() const;
+    /// Bytes of all of them, and of those that were lent.
+    std::map<Binding, std::uint64_t> bytes() const;
 
 private:
     void allocate_bytes(Binding binding, std::uint64_t bytes);
 
     Device& device_;
     Bindings& bindings_;
-    std::map<Binding, Buffer> buffers_;
+    std::map<Binding, std::vector<Buffer>> buffers_;
     std::map<Binding, const Buffer*> lent_;
 };
 
-/// The buffers by what they have entries for; what has no such measure comes last. Their bytes sum to all buffers'.
-std::vector<MemoryReport> memory_of(const Buffers& buffers);
+/// Bytes of buffers by what they have entries for; what has no such measure comes last. They sum to all buffers'.
+std::vector<MemoryReport> memory_of(const std::map<Binding, std::uint64_t>& bytes, std::uint32_t bands);
 
 }  // namespace vkcppm

@@ -12,14 +12,13 @@
 #include "render/estimators.h"
 #include "render/grid.h"
 #include "render/kernels.h"
+#include "render/memory.h"
 #include "render/status.h"
 
 namespace vkcppm {
 namespace {
 
-constexpr std::uint32_t most_photons_per_lane = 64;
 constexpr std::uint32_t stride_invocations = 16384;  // of kernels that stride over their input, at most
-constexpr std::uint32_t first_photon_capacity = 6;   // photons a path, before a render knows better
 constexpr double radius_cap = 0.2;                   // of the scene's radius
 constexpr double footprint_cap = 64.0;               // footprints of the pixel
 constexpr std::uint64_t most_sorted_a_lane = 32768;  // well below the loop trips of every driver
@@ -42,30 +41,39 @@ void set_test(gpu::Params& params, const EstimatorRow& estimator, const Settings
     }
 }
 
+std::uint32_t features_of(const FlatScene& scene, const Settings& settings) {
+    return bits_of(scene.features) | bits_of(features_of(settings));
+}
+
+/// What the scene, the camera and the number of light paths decide of them.
+gpu::Params first_params(const SceneOnDevice& on_device, const Camera& camera, const Settings& settings,
+                         std::uint32_t group) {
+    const FlatScene& scene = on_device.flat();
+    gpu::Params params = scene_params(on_device.device(), scene, camera, settings, settings.caustics.has_value());
+    set_photons(params, settings, on_device.device(), !scene.lights.empty(), group);
+    return params;
+}
+
 }  // namespace
 
 Integrator::Integrator(const SceneOnDevice& on_device, const Camera& camera, const Settings& settings,
-                       std::vector<KernelForm> forms)
-    : device_(on_device.device()), bindings_(device_), commands_(device_, bindings_), buffers_(device_, bindings_) {
-    if (forms.empty()) forms = forms_for(device_.info());
+                       std::vector<KernelForm> forms, std::uint64_t most_band_pixels)
+    : device_(on_device.device()),
+      forms_(forms.empty() ? forms_for(device_.info()) : std::move(forms)),
+      params_(first_params(on_device, camera, settings, forms_.front().group)),
+      counts_(counts_of(params_, settings, device_, features_of(on_device.flat(), settings), most_band_pixels)),
+      bands_(counts_.bands),
+      bindings_(device_, bands_.count()),
+      commands_(device_, bindings_),
+      buffers_(device_, bindings_) {
     const FlatScene& scene = on_device.flat();
     const EstimatorRow& estimator = find_estimator(settings.estimator);
-    const std::uint32_t features = bits_of(scene.features) | bits_of(features_of(settings));
+    const std::uint32_t features = features_of(scene, settings);
     scale_ = scene.frame.scale;
-    pixels_ = settings.size->pixels();
-    params_ = scene_params(device_, scene, camera, settings, settings.caustics.has_value());
     set_test(params_, estimator, settings);
-    set_params(scene, settings, forms.front().group);
+    set_params(scene, settings);
 
-    counts_.pixels = pixels_;
-    counts_.photon_lanes = params_.photon_lanes;
-    counts_.counters = COUNTERS_IN_ALL(params_, digit_bits_);
-    counts_.tallies = tally_rows(estimator, settings.rings, settings.sectors);
-    counts_.moments = moment_rows(estimator, settings.rings, settings.sectors);
-    counts_.nearest = settings.knn;
-    counts_.aovs = settings.aovs;
-    counts_.glossy = (features & FEATURE_GLOSS) != 0;
-    counts_.asked_groups = ASKS_FOR_LIGHTS(features) ? GROUPS_ASKED(features) : 0;
+    check_memory(counts_, settings, device_);
     on_device.lend(buffers_);
     buffers_.allocate(
         counts_, [](const BufferRow& row) { return row.entries != Entries::uploaded && row.per != Per::photon_slot; });
@@ -75,52 +83,35 @@ Integrator::Integrator(const SceneOnDevice& on_device, const Camera& camera, con
 
     gpu::PixelState pixel{};
     pixel.batch = float(settings.knn);  // B_1 = k_NN
-    buffer(Binding::pixels).upload(std::vector<gpu::PixelState>(pixels_, pixel));
+    const std::vector<gpu::PixelState> states(bands_.each, pixel);
+    for (std::uint32_t band = 0; band < bands_.count(); ++band) buffers_.at(Binding::pixels, band).upload(states);
     specialization_ = scene_specialization(scene, features);
     specialization_.merge(Specialization{{SPEC_RINGS, settings.rings},
                                          {SPEC_SECTORS, settings.sectors},
-                                         {SPEC_DIGIT_BITS, digit_bits_},
+                                         {SPEC_DIGIT_BITS, digits_.bits},
                                          {SPEC_LEVELS, params_.grid_levels}});
     estimator_ = estimator.name;
     std::vector<KernelId> all;
     for (const KernelRow& row : kernel_rows()) {
         if (row.pass == Pass::trace) continue;
         all.push_back(row.id);
-        kernels_.emplace(row.id, Compiled{KernelChoice(forms_of(row, forms)), {}, {std::string(row.name)}});
+        kernels_.emplace(row.id, Compiled{KernelChoice(forms_of(row, forms_)), {}, {std::string(row.name)}});
     }
     compile(all);
 }
 
-/// Photons, starting radii, the estimator's parameters and the grid's sizes. group: invocations of a work group.
-void Integrator::set_params(const FlatScene& scene, const Settings& settings, std::uint32_t group) {
-    const std::uint32_t photons = settings.photons.value_or(usual_light_paths);
-    params_.photons = scene.lights.empty() ? 0 : photons;
+/// Starting radii and the estimator's parameters.
+void Integrator::set_params(const FlatScene& scene, const Settings& settings) {
     params_.inverse_paths = params_.photons > 0 ? 1.0f / float(params_.photons) : 0.0f;
     params_.flux_unit = scene.light_power > 0.0 ? float(std::exp2(-std::floor(std::log2(scene.light_power)))) : 1.0f;
-    const std::uint32_t per_lane = std::clamp(params_.photons / device_.busy_lanes(), 1u, most_photons_per_lane);
-    params_.photons_per_lane = per_lane;
-    // Whole work groups: a SIMD group takes the share of all its lanes.
-    params_.photon_lanes = (params_.photons / per_lane / workgroup + 1) * workgroup;
-    params_.photon_capacity = per_lane * first_photon_capacity;
     params_.knn = settings.knn;
     params_.radius_cap = float(radius_cap * std::max(scene.radius, 1e-3));
-    const double mean_disc = double(settings.knn) * std::max(scene.area, 1e-12) / double(photons);
+    const double mean_disc = double(settings.knn) * std::max(scene.area, 1e-12) / double(photons_of(settings));
     params_.radius_floor = std::min(params_.radius_cap, float(std::sqrt(mean_disc / std::numbers::pi)));
     params_.footprint_cap = float(settings.caustics.value_or(footprint_cap));
     params_.alpha = float(settings.alpha);
     params_.k = float(settings.k);
     params_.beta = float(settings.beta);
-    params_.cells = std::bit_ceil(std::clamp(16 * photons, 1u << 12, 1u << 20));
-    params_.grid_levels = 1;
-    // By the settings alone, so that it does not hang on how the render was cut; for 65,536 paths all there are.
-    constexpr std::uint64_t sorted_bytes = 1u << 27, usual_photons = 16;  // a path
-    params_.most_levels = std::uint32_t(
-        std::clamp<std::uint64_t>(sorted_bytes / (sizeof(gpu::Photon) * usual_photons * photons), 1, GRID_LEVELS));
-    params_.sort_lanes = std::bit_ceil(std::clamp(photons / 128, 64u, 4096u));
-    params_.scan_blocks = std::clamp(params_.cells / 256, group, 4096u);
-    const auto key_bits = std::uint32_t(std::countr_zero(params_.cells));
-    digits_ = (key_bits + 7) / 8;
-    digit_bits_ = (key_bits + digits_ - 1) / digits_;
 }
 
 /// What the sizes of the buffers follow from now.
@@ -157,8 +148,8 @@ std::uint32_t Integrator::levels_that_fit(std::uint32_t wanted) const {
     const std::uint64_t memory = device_.info().memory_bytes;
     const std::uint64_t left = memory - std::min(memory, device_.allocated_bytes());
     const auto fits = [&](std::uint64_t levels) {
-        return levels * slots * sizeof(gpu::Photon) <= device_.largest_texels() && levels * slots * bytes <= left / 2 &&
-               levels * slots / params_.sort_lanes <= most_sorted_a_lane;
+        return levels * slots * sizeof(gpu::Photon) <= device_.largest_buffer(Access::records) &&
+               levels * slots * bytes <= left / 2 && levels * slots / params_.sort_lanes <= most_sorted_a_lane;
     };
     while (wanted > 1 && !fits(wanted)) --wanted;
     return wanted;
@@ -201,39 +192,55 @@ void Integrator::add_levels(std::uint32_t levels) {
 }
 
 // The algorithm box: every line is one pass over its buffers, each after the one before it.
-void Integrator::iterate(std::uint32_t i, Pass from, Pass to, std::uint32_t first_round) {
-    const auto runs = [&](Pass pass) { return from <= pass && pass <= to; };
-    const auto round = [&](Pass pass) { return from == pass ? first_round : 0; };
-    if (runs(Pass::eye)) launch_rounds(KernelId::eye, pixels_, i, round(Pass::eye));
+void Integrator::iterate(std::uint32_t i, const Part& part) {
+    Pass from = part.from;
+    const auto runs = [&](Pass pass) { return from <= pass && pass <= part.to; };
+    const auto round = [&](Pass pass) { return from == pass ? part.first_round : 0; };
+    enter(part.first_band);  // the first of all, where there are passes of photons
     if (runs(Pass::photon)) launch_rounds(KernelId::photon, params_.photon_lanes, i, round(Pass::photon));
     if (runs(Pass::grid)) build_grid(i);
-    if (runs(Pass::knn)) launch_rounds(KernelId::knn, std::nullopt, i, round(Pass::knn));
-    if (runs(Pass::gather)) launch_rounds(KernelId::gather, pixels_, i, round(Pass::gather));
-    if (!runs(Pass::update)) return;
-    launch(KernelId::update, pixels_, {.iteration = i, .last_round = 1, .plans_next = plans_grid(i + 1) ? 1u : 0u});
-    launch(KernelId::advance, 1, {.iteration = i, .last_round = 1});
+    if (part.to < Pass::eye) return;
+    for (std::uint32_t band = part.first_band; band <= part.last_band; ++band) {
+        enter(band);
+        const std::uint64_t pixels = bands_.size(band);
+        if (runs(Pass::eye)) launch_rounds(KernelId::eye, pixels, i, round(Pass::eye));
+        if (runs(Pass::knn)) look_for_radii(i, round(Pass::knn));
+        if (runs(Pass::gather)) launch_rounds(KernelId::gather, pixels, i, round(Pass::gather));
+        if (runs(Pass::update)) update(i, pixels);
+        from = Pass::photon;  // the bands that follow go through all
+    }
+}
+
+void Integrator::look_for_radii(std::uint32_t i, std::uint32_t first_round) {
+    gpu::Launch push{.iteration = i, .last_round = 1};
+    push.search_group = kernels_.at(KernelId::knn).choice.forms().front().group;  // the form that launch_rounds takes
+    if (first_round == 0) launch(KernelId::searches, 1, push);
+    launch_rounds(KernelId::knn, std::nullopt, i, first_round);
+}
+
+void Integrator::update(std::uint32_t i, std::uint64_t pixels) {
+    launch(KernelId::update, pixels, {.iteration = i, .last_round = 1, .plans_next = plans_grid(i + 1) ? 1u : 0u});
+    launch(KernelId::advance, 1, {.iteration = i, .last_round = 1, .last_band = band_ + 1 == bands_.count() ? 1u : 0u});
 }
 
 void Integrator::build_grid(std::uint32_t i) {
     const gpu::Launch plain{.iteration = i, .last_round = 1};
     if (plans_grid(i)) launch(KernelId::grid_plan, 1, plain);
     scan(i, COUNTERS_OF_PATHS(params_), params_.photons + 1);  // photons before each path, and in all
-    gpu::Launch clear = plain;
-    clear.search_group = kernels_.at(KernelId::knn).choice.forms().front().group;  // the form that launch_rounds takes
     // Else a small render spends a third of its time on invocations that find nothing. No lights: no photons.
     const std::uint32_t striding = std::clamp(params_.photons, 1u, stride_invocations);
-    launch(KernelId::grid_clear, striding, clear);
+    launch(KernelId::grid_clear, striding, plain);
     for (std::uint32_t level = 0; level < params_.grid_levels; ++level) {
         gpu::Launch push = plain;
         push.level = level;
         launch(KernelId::grid_key, params_.photon_lanes, push);
     }
-    for (std::uint32_t digit = 0; digit < digits_; ++digit) {
+    for (std::uint32_t digit = 0; digit < digits_.count; ++digit) {
         gpu::Launch push = plain;
-        push.digit_shift = digit * digit_bits_;
+        push.digit_shift = digit * digits_.bits;
         push.reads_b = digit % 2;
         launch(KernelId::radix_count, params_.sort_lanes, push);
-        scan(i, COUNTERS_OF_RADIX(params_), params_.sort_lanes << digit_bits_);
+        scan(i, COUNTERS_OF_RADIX(params_), params_.sort_lanes << digits_.bits);
         launch(KernelId::radix_scatter, params_.sort_lanes, push);
     }
     launch(KernelId::grid_order, striding, plain);
@@ -248,9 +255,28 @@ void Integrator::scan(std::uint32_t i, std::uint32_t first, std::uint32_t count)
     launch(KernelId::scan_apply, params_.scan_blocks, push);
 }
 
+/// Begins to record launches, those of no band and of the first.
+void Integrator::begin() {
+    commands_.begin();
+    band_ = 0;
+}
+
+/// What is launched from here on is of that band.
+void Integrator::enter(std::uint32_t band) {
+    if (band != band_) commands_.use(band);
+    band_ = band;
+}
+
+gpu::Launch Integrator::in_band(gpu::Launch push) const {
+    push.band = band_;
+    push.first_pixel = std::uint32_t(bands_.first(band_));
+    push.pixels = std::uint32_t(bands_.size(band_));
+    return push;
+}
+
 void Integrator::launch(KernelId id, std::uint64_t invocations, const gpu::Launch& push) {
     const Compiled& kernel = kernels_.at(id);
-    commands_.launch(kernel.forms[kernel.choice.index(push.iteration)], invocations, push);
+    commands_.launch(kernel.forms[kernel.choice.index(push.iteration)], invocations, in_band(push));
     launched_.push_back(id);
 }
 
@@ -266,7 +292,7 @@ void Integrator::launch_rounds(KernelId id, std::optional<std::uint64_t> invocat
             launch(id, *invocations, push);
         } else {
             commands_.launch_indirect(kernel.forms.front(), buffer(Binding::status),
-                                      offsetof(gpu::Status, search_groups), push);
+                                      offsetof(gpu::Status, search_groups), in_band(push));
             launched_.push_back(id);
         }
     }
@@ -304,43 +330,31 @@ void Integrator::run(std::uint32_t count) {
 /// One submission, and more where work had to be finished: returns false then.
 bool Integrator::run_to(std::uint32_t target) {
     bool undisturbed = true;
-    commands_.begin();
-    for (std::uint32_t i = completed_; i < target; ++i) iterate(i, Pass::eye, Pass::update, 0);
-    finish();
-    while (unblock(Pass::update)) {
+    const auto submit = [&] {
+        begin();
+        for (std::uint32_t i = completed_; i < target; ++i) iterate(i, all_passes());
+        finish();
+    };
+    submit();
+    while (unblock(all_passes())) {
         undisturbed = false;
         // The blocked iteration has been finished; those behind it did nothing.
         if (completed_ >= target) break;
-        commands_.begin();
-        for (std::uint32_t i = completed_; i < target; ++i) iterate(i, Pass::eye, Pass::update, 0);
-        finish();
+        submit();
     }
     assert(completed_ == target);
     return undisturbed;
 }
 
-std::vector<Integrator::PassHash> Integrator::run_hashed() {
-    const std::uint32_t iteration = completed_;
-    std::vector<PassHash> hashes;
-    for (const Pass pass : {Pass::eye, Pass::photon, Pass::grid, Pass::knn, Pass::gather, Pass::update}) {
-        commands_.begin();
-        iterate(iteration, pass, pass, 0);
-        finish();
-        unblock(pass);
-        hashes.push_back({std::string(name_of(pass)), hash_of(pass)});
-    }
-    return hashes;
-}
-
-/// Reads the status. Where a pass ran out of its budget: gives it more and finishes the iteration up to pass `to`.
+/// Reads the status. Where a pass ran out of its budget: gives it more and finishes the iteration to where `part` ends.
 /// Returns true where there was such a pass, so that iterations behind it have yet to run.
-bool Integrator::unblock(Pass to) {
+bool Integrator::unblock(const Part& part) {
     bool was_blocked = false;
     while (true) {
         gpu::Status status = buffer(Binding::status).download_value<gpu::Status>();
         const std::uint32_t blocked = status.blocked;
         const StatusCounts counts = take_counts(status, params_.step_budget, device_.info().name);
-        rays_ += counts.rays + pixels_ * (status.completed - completed_);
+        rays_ += counts.rays + bands_.pixels * (status.completed - completed_);
         stored_ += counts.stored;
         invalid_ += counts.invalid;
         completed_ = status.completed;
@@ -351,51 +365,69 @@ bool Integrator::unblock(Pass to) {
         const auto cut =
             std::ranges::find_if(kernel_rows(), [&](const KernelRow& row) { return (row.unfinished & blocked) != 0; });
         const bool out_of_steps = cut != kernel_rows().end();
-        Pass from = out_of_steps ? cut->pass : Pass::update;
-        std::uint32_t first_round = 1;
+        Part rest = part;
+        rest.from = out_of_steps ? cut->pass : Pass::update;
+        rest.first_band = status.band;
+        rest.first_round = 1;
         if (blocked & PASS_CAPACITY) {
             params_.photon_capacity = std::max(params_.photon_capacity, status.capacity) * 5 / 4;
             allocate_photons();
-            from = Pass::photon;
-            first_round = 0;  // the paths start again and are the same
+            rest.from = Pass::photon;
+            rest.first_round = 0;  // the paths start again and are the same
         }
         if (blocked & PASS_LEVELS) {
-            from = Pass::grid;
-            first_round = 0;
+            rest.from = Pass::grid;
+            rest.first_round = 0;
             const std::uint32_t levels = levels_that_fit(status.levels);
             if (levels < status.levels) limit_levels(levels);  // the grid is planned again
             add_levels(levels);
         }
-        commands_.begin();
-        iterate(completed_, from, to, first_round);
+        begin();
+        iterate(completed_, rest);
         if (out_of_steps) kernels_.at(cut->id).rounds *= 2;
         finish();
     }
 }
 
 Image Integrator::resolve() {
-    run_kernel(KernelId::resolve, pixels_, {});
     Image image;
     image.extent = {params_.width, params_.height};
-    image.rgb = buffer(Binding::image).download<glm::vec3>(pixels_);
+    image.rgb.resize(bands_.pixels);
+    for (std::uint32_t band = 0; band < bands_.count(); ++band) {
+        begin();
+        enter(band);
+        launch(KernelId::resolve, bands_.size(band), {});
+        finish();
+        buffer(Binding::image).download_to(std::span(image.rgb).subspan(bands_.first(band), bands_.size(band)));
+    }
     return image;
+}
+
+/// Of a buffer with one entry for every pixel of the picture.
+template <typename T> std::vector<T> Integrator::of_pixels(Binding binding) const {
+    std::vector<T> all(bands_.pixels);
+    for (std::uint32_t band = 0; band < bands_.count(); ++band) {
+        buffers_.at(binding, band).download_to(std::span(all).subspan(bands_.first(band), bands_.size(band)));
+    }
+    return all;
 }
 
 std::vector<float> Integrator::radii() const {
     std::vector<float> radii;
-    for (const gpu::PixelState& state : buffers_.at(Binding::pixels).download<gpu::PixelState>(pixels_)) {
+    radii.reserve(bands_.pixels);
+    for (const gpu::PixelState& state : of_pixels<gpu::PixelState>(Binding::pixels)) {
         radii.push_back(float(std::sqrt(double(state.radius2)) / scale_));
     }
     return radii;
 }
 
 std::map<std::string, std::vector<float>> Integrator::aovs() const {
-    const auto states = buffers_.at(Binding::pixels).download<gpu::PixelState>(pixels_);
-    const auto sums = buffers_.at(Binding::aovs).download<gpu::Aovs>(pixels_);
+    const auto states = of_pixels<gpu::PixelState>(Binding::pixels);
+    const auto sums = of_pixels<gpu::Aovs>(Binding::aovs);
     std::map<std::string, std::vector<float>> channels;
     const auto add = [&](const std::string& name, const auto& value) {
         std::vector<float>& channel = channels[name];
-        for (std::uint64_t i = 0; i < pixels_; ++i) channel.push_back(float(value(states[i], sums[i])));
+        for (std::uint64_t i = 0; i < bands_.pixels; ++i) channel.push_back(float(value(states[i], sums[i])));
     };
     using State = const gpu::PixelState&;
     using Sums = const gpu::Aovs&;
@@ -413,13 +445,13 @@ std::map<std::string, std::vector<float>> Integrator::aovs() const {
         add(std::string("Albedo.") + "RGB"[c], [&](State, Sums a) { return mean(a.albedo[c], a.albedo_low[c], a); });
         add(std::string("N.") + "XYZ"[c], [&](State, Sums a) { return mean(a.normal[c], a.normal_low[c], a); });
     }
-    const auto films = buffers_.at(Binding::film).download<gpu::Film>(pixels_);
+    const auto films = of_pixels<gpu::Film>(Binding::film);
     const double iterations = std::max(1u, completed_);
     for (int c = 0; c < 3; ++c) {
         const auto layer = [&](std::uint64_t i, std::uint32_t l) {
             return (double(sums[i].layer[l][c]) + double(sums[i].layer_low[l][c])) / iterations;
         };
-        for (std::uint64_t i = 0; i < pixels_; ++i) {
+        for (std::uint64_t i = 0; i < bands_.pixels; ++i) {
             const double all = (double(films[i].sum[c]) + double(films[i].low[c])) / iterations;
             const double direct = layer(i, LAYER_DIRECT), caustic = layer(i, LAYER_CAUSTIC);
             channels[std::string("direct.") + "RGB"[c]].push_back(float(direct));
@@ -436,27 +468,31 @@ void Integrator::set_params(const gpu::Params& params) {
 }
 
 void Integrator::run_kernel(KernelId kernel, std::uint64_t invocations, const gpu::Launch& push) {
-    commands_.begin();
+    assert(bands_.count() == 1);
+    begin();
     launch(kernel, invocations, push);
     finish();
 }
 
 void Integrator::run_from_grid() {
+    assert(bands_.count() == 1);
     // In place of the eye pass.
-    const auto hits = buffer(Binding::hit_position).download<gpu::HitPosition>(pixels_);
-    const auto states = buffer(Binding::pixels).download<gpu::PixelState>(pixels_);
+    const auto hits = buffer(Binding::hit_position).download<gpu::HitPosition>(bands_.pixels);
+    const auto states = of_pixels<gpu::PixelState>(Binding::pixels);
     std::vector<std::uint32_t> searches;
-    for (std::uint32_t pixel = 0; pixel < pixels_; ++pixel) {
+    for (std::uint32_t pixel = 0; pixel < bands_.pixels; ++pixel) {
         if ((hits[pixel].state & HIT_DIFFUSE) && states[pixel].seeded == 0) searches.push_back(pixel);
     }
     buffer(Binding::searches).upload(searches);
     auto status = buffer(Binding::status).download_value<gpu::Status>();
     status.searches = std::uint32_t(searches.size());
     buffer(Binding::status).upload_value(status);
-    commands_.begin();
-    iterate(completed_, Pass::grid, Pass::update, 0);
-    finish();
-    unblock(Pass::update);
+    for (const Part& part : {Part{.from = Pass::grid, .to = Pass::grid}, Part{.from = Pass::knn}}) {
+        begin();
+        iterate(completed_, part);
+        finish();
+        unblock(part);
+    }
 }
 
 double Integrator::seconds() const {
@@ -481,7 +517,7 @@ void Integrator::fill(Report& report) const {
     report.rays = rays_;
     report.invalid = invalid_;
     report.device_memory_bytes = device_.peak_bytes();
-    report.memory = memory_of(buffers_);
+    report.memory = memory_of(buffers_.bytes(), bands_.count());
     report.device = device_.info().name;
     report.driver = device_.info().driver;
 }

@@ -15,6 +15,7 @@
 #include "render/buffers.h"
 #include "render/kernel_choice.h"
 #include "render/kernels.h"
+#include "render/memory.h"
 #include "render/report.h"
 #include "render/scene_on_device.h"
 #include "render/settings.h"
@@ -27,10 +28,11 @@ namespace vkcppm {
 class Integrator {
 public:
     /// Allocates the buffers, compiles the pipelines. `scene` must outlive this, `settings` be resolved. forms: in
-    /// which kernels are compiled, those of the device where there are none; every form gives the same bits.
+    /// which kernels are compiled, those of the device where there are none; most_band_pixels: of a band of the
+    /// picture, 0: as many as is best. Every form and every number of bands gives the same bits.
     /// Throws Error(out_of_device_memory) where the picture does not fit the device beside what is on it.
     Integrator(const SceneOnDevice& scene, const Camera& camera, const Settings& settings,
-               std::vector<KernelForm> forms = {});
+               std::vector<KernelForm> forms = {}, std::uint64_t most_band_pixels = 0);
 
     /// Runs `count` iterations in one submission, or more where work had to be finished in further rounds.
     /// Throws Error(device_lost), Error(internal) where a ray cannot be traced within the device's limits.
@@ -38,7 +40,7 @@ public:
 
     /// Hash of what a pass wrote for those after it.
     struct PassHash {
-        std::string pass;  // eye, photon, grid, knn, gather or update
+        std::string pass;  // photon, grid, eye, knn, gather or update
         std::uint64_t hash = 0;
     };
 
@@ -75,7 +77,7 @@ public:
     std::uint64_t invalid() const { return invalid_; }
 
     /// For tests, which drive single kernels on states of their own: a buffer, the parameters (uploaded by set_params),
-    /// one launch of a kernel.
+    /// one launch of a kernel. Of pictures of one band.
     Buffer& buffer(Binding binding) { return buffers_.at(binding); }
     const gpu::Params& params() const { return params_; }
     void set_params(const gpu::Params& params);
@@ -93,7 +95,7 @@ private:
         std::uint32_t rounds = 1;  // that it has needed so far
     };
 
-    void set_params(const FlatScene& scene, const Settings& settings, std::uint32_t group);
+    void set_params(const FlatScene& scene, const Settings& settings);
     Counts counts() const;
     void allocate_photons();
     void allocate_sorted();
@@ -101,33 +103,53 @@ private:
     void limit_levels(std::uint32_t levels);
     void add_levels(std::uint32_t levels);
     void compile(const std::vector<KernelId>& ids);
-    void iterate(std::uint32_t iteration, Pass from, Pass to, std::uint32_t first_round);
+    /// Passes of an iteration: from one in a band, at some round of it, to one in a band that is not before it. What
+    /// photons do comes before all bands.
+    struct Part {
+        Pass from = Pass::photon;
+        Pass to = Pass::update;
+        std::uint32_t first_band = 0;
+        std::uint32_t last_band = 0;
+        std::uint32_t first_round = 0;
+    };
+    Part all_passes() const { return {.last_band = bands_.count() - 1}; }
+    void iterate(std::uint32_t iteration, const Part& part);
+    void begin();
+    void enter(std::uint32_t band);
     void launch(KernelId id, std::uint64_t invocations, const gpu::Launch& push);
+    gpu::Launch in_band(gpu::Launch push) const;
     void launch_rounds(KernelId id, std::optional<std::uint64_t> invocations, std::uint32_t iteration,
                        std::uint32_t first_round);
     void build_grid(std::uint32_t iteration);
+    void look_for_radii(std::uint32_t iteration, std::uint32_t first_round);
+    void update(std::uint32_t iteration, std::uint64_t pixels);
     void scan(std::uint32_t iteration, std::uint32_t offset, std::uint32_t count);
     void finish();
     bool run_to(std::uint32_t target);
     void choose_kernels(std::uint32_t target);
-    bool unblock(Pass to);
-    std::uint64_t hash_of(Pass pass) const;
+    bool unblock(const Part& part);
+    template <typename T> std::vector<T> of_pixels(Binding binding) const;
+    std::uint64_t arrays_of(const BufferRow& row) const;
+    template <typename Buffers, typename Use> void each_carried(Buffers& buffers, Use use) const;
+    class Written;
+    void add_written(Written& written, Pass pass, std::uint32_t band) const;
     std::uint64_t state_bytes() const;
 
     Device& device_;
+    std::vector<KernelForm> forms_;
+    gpu::Params params_{};
+    Counts counts_;  // of what the photons' slots and levels do not change
+    Bands bands_;
+    Digits digits_ = digits_of(params_);
     Bindings bindings_;
     Commands commands_;
-    gpu::Params params_{};
     Buffers buffers_;
-    Counts counts_;  // of what the photons' slots and levels do not change
     Specialization specialization_;
     std::string_view estimator_;
     std::map<KernelId, Compiled> kernels_;
     std::vector<KernelId> launched_;  // since the last submission, in order
     double scale_ = 1.0;              // frame units a metre
-    std::uint64_t pixels_ = 0;
-    std::uint32_t digit_bits_ = 7;
-    std::uint32_t digits_ = 3;  // radix passes
+    std::uint32_t band_ = 0;          // of which launches are recorded
     std::uint32_t completed_ = 0;
     std::uint64_t rays_ = 0;
     std::uint64_t stored_ = 0;

@@ -22,43 +22,67 @@ std::span<const std::byte> planned(const gpu::Status& status) {
     return std::as_bytes(std::span(&status, 1)).subspan(planned_from);
 }
 
-class Hasher {
+}  // namespace
+
+/// What a pass wrote, array by array, to be hashed one after the other: in parts, a band of the picture each, so that
+/// the hash is the same however many there are.
+class Integrator::Written {
 public:
-    /// The first `bytes` bytes, or all.
-    void add(const Buffer& buffer, std::uint64_t bytes) { hash_ = fnv1a(buffer.download<std::uint8_t>(bytes), hash_); }
-    void add(const Buffer& buffer) { add(buffer, buffer.bytes()); }
-    void add(std::span<const std::byte> bytes) { hash_ = fnv1a_of(bytes, hash_); }
-    template <typename T> void add(const T& value) { hash_ = fnv1a_of(std::span(&value, 1), hash_); }
-    std::uint64_t hash() const { return hash_; }
+    /// What is added next belongs to the first array, as all that follows does to those behind it.
+    void begin_part() { next_ = 0; }
+    void add(std::span<const std::byte> bytes) {
+        if (next_ == arrays_.size()) arrays_.emplace_back();
+        std::vector<std::byte>& array = arrays_[next_++];
+        array.insert(array.end(), bytes.begin(), bytes.end());
+    }
+    std::uint64_t hash() const {
+        std::uint64_t hash = fnv1a_start;
+        for (const std::vector<std::byte>& array : arrays_) hash = fnv1a_of(std::span<const std::byte>(array), hash);
+        return hash;
+    }
 
 private:
-    std::uint64_t hash_ = fnv1a_start;
+    std::vector<std::vector<std::byte>> arrays_;
+    std::size_t next_ = 0;
 };
 
-}  // namespace
+/// Entries that a row has for a pixel: as many arrays stand one after the other in its buffer, each of all pixels.
+std::uint64_t Integrator::arrays_of(const BufferRow& row) const { return entries_of(row, counts_) / bands_.each; }
+
+/// Calls use(buffer, first byte, bytes) for all that an iteration leaves to the next, in an order that is the same
+/// however many bands there are. Buffers: those of this integrator, const or not.
+template <typename Buffers, typename Use> void Integrator::each_carried(Buffers& buffers, Use use) const {
+    for (const BufferRow& row : buffer_rows()) {
+        if (row.life != Life::carried) continue;
+        if (row.per != Per::pixel) {
+            use(buffers.at(row.binding), 0, buffers.at(row.binding).bytes());
+            continue;
+        }
+        for (std::uint64_t array = 0; array < arrays_of(row); ++array) {
+            for (std::uint32_t band = 0; band < bands_.count(); ++band) {
+                const std::uint64_t bytes = bands_.size(band) * row.element_bytes;
+                use(buffers.at(row.binding, band), array * bytes, bytes);
+            }
+        }
+    }
+}
 
 /// Bytes of save().
 std::uint64_t Integrator::state_bytes() const {
-    std::uint64_t bytes = sizeof(gpu::Status) - planned_from;
-    for (const BufferRow& row : buffer_rows()) {
-        if (row.life == Life::carried) bytes += buffers_.at(row.binding).bytes();
-    }
-    return bytes;
+    std::uint64_t sum = sizeof(gpu::Status) - planned_from;
+    each_carried(buffers_, [&](const Buffer&, std::uint64_t, std::uint64_t bytes) { sum += bytes; });
+    return sum;
 }
 
 std::vector<std::byte> Integrator::save() const {
-    std::vector<std::byte> state;
-    state.reserve(state_bytes());
-    const auto append = [&](std::span<const std::byte> bytes) {
-        state.insert(state.end(), bytes.begin(), bytes.end());
-    };
+    std::vector<std::byte> state(state_bytes());
     const gpu::Status status = buffers_.at(Binding::status).download_value<gpu::Status>();
-    append(planned(status));
-    for (const BufferRow& row : buffer_rows()) {
-        if (row.life != Life::carried) continue;
-        const Buffer& buffer = buffers_.at(row.binding);
-        append(buffer.download<std::byte>(buffer.bytes()));
-    }
+    std::ranges::copy(planned(status), state.begin());
+    std::span<std::byte> rest = std::span(state).subspan(sizeof(status) - planned_from);
+    each_carried(buffers_, [&](const Buffer& buffer, std::uint64_t first, std::uint64_t bytes) {
+        buffer.download_to(rest.first(bytes), first);
+        rest = rest.subspan(bytes);
+    });
     return state;
 }
 
@@ -75,9 +99,8 @@ void Integrator::restore(const Report& report, std::span<const std::byte> state)
         return taken;
     };
     std::ranges::copy(take(sizeof(status) - planned_from), reinterpret_cast<std::byte*>(&status) + planned_from);
-    for (const BufferRow& row : buffer_rows()) {
-        if (row.life == Life::carried) buffer(row.binding).upload(take(buffer(row.binding).bytes()));
-    }
+    each_carried(buffers_,
+                 [&](Buffer& buffer, std::uint64_t first, std::uint64_t bytes) { buffer.upload(take(bytes), first); });
     const auto grid = buffer(Binding::grid).download_value<gpu::Grid>();
     if (!grid_fits(grid, params_)) {
         throw Error(ExitCode::bad_scene,
@@ -101,8 +124,12 @@ void Integrator::restore(const Report& report, std::span<const std::byte> state)
     }
 }
 
-std::uint64_t Integrator::hash_of(Pass pass) const {
-    Hasher hasher;
+/// What `pass` wrote in that band.
+void Integrator::add_written(Written& written, Pass pass, std::uint32_t band) const {
+    written.begin_part();
+    const auto add = [&](Binding binding, std::uint64_t bytes) {
+        written.add(buffers_.at(binding).download<std::byte>(bytes));
+    };
     const auto covers = [&](Hashed hashed) {
         switch (hashed) {
             case Hashed::eye: return pass == Pass::eye;
@@ -115,18 +142,24 @@ std::uint64_t Integrator::hash_of(Pass pass) const {
         return false;
     };
     for (const BufferRow& row : buffer_rows()) {
-        if (covers(row.hashed)) hasher.add(buffers_.at(row.binding));
+        if (!covers(row.hashed)) continue;
+        const Buffer& buffer = buffers_.at(row.binding, row.per == Per::pixel ? band : 0);
+        const std::uint64_t bytes = bands_.size(band) * row.element_bytes;
+        for (std::uint64_t array = 0; array < arrays_of(row); ++array) {
+            written.add(buffer.download<std::byte>(bytes, array * bytes));
+        }
     }
     switch (pass) {
         case Pass::eye: {
-            const Buffer& surfaces = buffers_.at(Binding::hit_surface);
-            if (surfaces.bytes() < pixels_ * sizeof(gpu::HitSurface)) break;
-            // Pixels that gather nothing hold the surface of an earlier iteration.
-            const auto hits = buffers_.at(Binding::hit_position).download<gpu::HitPosition>(pixels_);
-            const auto surface = surfaces.download<gpu::HitSurface>(pixels_);
-            for (std::uint64_t i = 0; i < pixels_; ++i) {
-                if (hits[i].state & HIT_DIFFUSE) hasher.add(surface[i]);
+            if (!counts_.glossy) break;
+            // Pixels that gather nothing hold the surface of an earlier iteration, or band.
+            const auto hits = buffers_.at(Binding::hit_position).download<gpu::HitPosition>(bands_.size(band));
+            auto surfaces = buffers_.at(Binding::hit_surface).download<gpu::HitSurface>(bands_.size(band));
+            std::size_t kept = 0;
+            for (std::size_t i = 0; i < hits.size(); ++i) {
+                if (hits[i].state & HIT_DIFFUSE) surfaces[kept++] = surfaces[i];
             }
+            written.add(std::as_bytes(std::span(surfaces).first(kept)));
             break;
         }
         case Pass::photon: {
@@ -137,33 +170,60 @@ std::uint64_t Integrator::hash_of(Pass pass) const {
             const std::uint64_t slots = std::uint64_t(params_.photon_lanes) * params_.photon_capacity;
             const auto photons = buffers_.at(Binding::photons).download<gpu::Photon>(slots);
             const auto flux = buffers_.at(Binding::photon_flux).download<gpu::PhotonFlux>(slots);
+            struct Stored {
+                gpu::Photon photon;
+                gpu::PhotonFlux flux;
+            };
+            std::vector<Stored> stored;
             for (std::uint64_t path = 0; path < paths; ++path) {
                 const std::uint64_t begin = counters[slots_at + path], end = begin + counters[counts_at + path];
                 assert(end <= slots);
-                for (std::uint64_t i = begin; i < end; ++i) {
-                    hasher.add(photons[i]);
-                    hasher.add(flux[i]);
-                }
+                for (std::uint64_t i = begin; i < end; ++i) stored.push_back({photons[i], flux[i]});
             }
+            written.add(std::as_bytes(std::span(stored)));
             break;
         }
         case Pass::grid: {
             const auto grid = buffers_.at(Binding::grid).download_value<gpu::Grid>();
             const auto starts = buffers_.at(Binding::counters).download<std::uint32_t>(std::uint64_t(grid.entries) + 1);
             const std::uint64_t photons = starts.back();
-            hasher.add(grid);
-            hasher.add(buffers_.at(Binding::counters), starts.size() * sizeof(std::uint32_t));
-            hasher.add(buffers_.at(Binding::sorted), photons * sizeof(gpu::Photon));
-            hasher.add(buffers_.at(Binding::sorted_flux), photons * sizeof(gpu::PhotonFlux));
+            written.add(std::as_bytes(std::span(&grid, 1)));
+            written.add(std::as_bytes(std::span(starts)));
+            add(Binding::sorted, photons * sizeof(gpu::Photon));
+            add(Binding::sorted_flux, photons * sizeof(gpu::PhotonFlux));
             break;
         }
-        case Pass::update: hasher.add(planned(buffers_.at(Binding::status).download_value<gpu::Status>())); break;
+        case Pass::update: {
+            if (band + 1 < bands_.count()) break;
+            const gpu::Status status = buffers_.at(Binding::status).download_value<gpu::Status>();
+            written.add(planned(status));
+            break;
+        }
         case Pass::knn:
         case Pass::gather:
         case Pass::picture:
         case Pass::trace: break;
     }
-    return hasher.hash();
+}
+
+std::vector<Integrator::PassHash> Integrator::run_hashed() {
+    const std::uint32_t iteration = completed_;
+    std::map<Pass, Written> written;
+    const auto run = [&](Pass pass, std::uint32_t band) {
+        const Part part{.from = pass, .to = pass, .first_band = band, .last_band = band};
+        begin();
+        iterate(iteration, part);
+        finish();
+        unblock(part);
+        add_written(written[pass], pass, band);
+    };
+    for (const Pass pass : {Pass::photon, Pass::grid}) run(pass, 0);
+    for (std::uint32_t band = 0; band < bands_.count(); ++band) {
+        for (const Pass pass : {Pass::eye, Pass::knn, Pass::gather, Pass::update}) run(pass, band);
+    }
+    std::vector<PassHash> hashes;
+    for (const auto& [pass, arrays] : written) hashes.push_back({std::string(name_of(pass)), arrays.hash()});
+    return hashes;
 }
 
 }  // namespace vkcppm

@@ -18,7 +18,8 @@ Specialization specialize(const FlatScene& scene, const Settings& settings, Path
 
 }  // namespace
 
-PathTracer::PathTracer(const SceneOnDevice& scene, const Camera& camera, const Settings& settings, Light light)
+PathTracer::PathTracer(const SceneOnDevice& scene, const Camera& camera, const Settings& settings, Light light,
+                       std::uint64_t most_band_pixels)
     : device_(scene.device()),
       bindings_(device_),
       commands_(device_, bindings_),
@@ -28,8 +29,8 @@ PathTracer::PathTracer(const SceneOnDevice& scene, const Camera& camera, const S
       size_(*settings.size) {
     scene.lend(buffers_);
     Counts counts;
-    counts.pixels = size_.pixels();
     counts.traced = true;
+    bands_ = counts.bands = bands_of(size_.pixels(), counts, device_, most_band_pixels);
     buffers_.allocate(counts, [](const BufferRow& row) {
         return row.entries == Entries::where_traced || row.binding == Binding::image ||
                row.binding == Binding::params || row.binding == Binding::status;
@@ -39,17 +40,31 @@ PathTracer::PathTracer(const SceneOnDevice& scene, const Camera& camera, const S
 }
 
 Image PathTracer::trace() {
+    Image image{size_, std::vector<glm::vec3>(size_.pixels())};
+    for (std::uint32_t band = 0; band < bands_.count(); ++band) {
+        trace(bands_.first(band), bands_.size(band));
+        buffers_.at(Binding::image).download_to(std::span(image.rgb).subspan(bands_.first(band), bands_.size(band)));
+    }
+    ++batches_;
+    return image;
+}
+
+/// The pixels of a band, of which no state is kept.
+void PathTracer::trace(std::uint64_t first, std::uint64_t pixels) {
     gpu::Status status{};
     status.completed = batches_;
+    gpu::Launch push{.iteration = batches_, .paths = batch};
+    push.first_pixel = std::uint32_t(first);
+    push.pixels = std::uint32_t(pixels);
     bool blocked = true;
     for (std::uint32_t first_round = 0; blocked; first_round += rounds_) {
         if (first_round > 0 && rounds_ < most_rounds) rounds_ *= 2;
         buffers_.at(Binding::status).upload_value(status);
         commands_.begin();
         for (std::uint32_t r = 0; r < rounds_; ++r) {
-            const std::uint32_t last = r + 1 == rounds_ ? 1 : 0;
-            commands_.launch(kernel_, size_.pixels(),
-                             {.iteration = batches_, .round = first_round + r, .last_round = last, .paths = batch});
+            push.round = first_round + r;
+            push.last_round = r + 1 == rounds_ ? 1 : 0;
+            commands_.launch(kernel_, pixels, push);
         }
         for (const Timing& timing : commands_.finish()) {
             ++pass_.calls;
@@ -61,8 +76,6 @@ Image PathTracer::trace() {
         rays_ += counts.rays;
         invalid_ += counts.invalid;
     }
-    ++batches_;
-    return {size_, buffers_.at(Binding::image).download<glm::vec3>(size_.pixels())};
 }
 
 }  // namespace vkcppm

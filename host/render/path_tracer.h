@@ -20,8 +20,10 @@ public:
     enum class Light { all, split };
 
     /// Compiles the pipeline. `scene` must outlive this, `settings` be resolved; size, camera, lens, seed and max_depth
-    /// count. Throws Error(out_of_device_memory) where the picture does not fit the device beside what is on it.
-    PathTracer(const SceneOnDevice& scene, const Camera& camera, const Settings& settings, Light light);
+    /// count. most_band_pixels: as of the Integrator. Throws Error(out_of_device_memory) where the picture does not fit
+    /// the device beside what is on it.
+    PathTracer(const SceneOnDevice& scene, const Camera& camera, const Settings& settings, Light light,
+               std::uint64_t most_band_pixels = 0);
 
     /// Paths a pixel of one trace().
     static constexpr std::uint32_t batch = 16;
@@ -38,12 +40,15 @@ public:
     std::uint64_t invalid() const { return invalid_; }  // paths that were not finite and were dropped
 
 private:
+    void trace(std::uint64_t first, std::uint64_t pixels);
+
     Device& device_;
     Bindings bindings_;
     Commands commands_;
     Buffers buffers_;
     Kernel kernel_;
     Extent size_;
+    Bands bands_;
     PassReport pass_{std::string(row_of(KernelId::path).name)};
     std::uint32_t rounds_ = 1;
     std::uint32_t batches_ = 0;

@@ -8,6 +8,7 @@
 #include "flat/flatten.h"
 #include "render/integrator.h"
 #include "render/light_paths.h"
+#include "render/memory.h"
 #include "render/submission.h"
 #include "vk/device.h"
 
@@ -53,8 +54,8 @@ Rendering render(const Scene& scene, const Settings& wanted, Device& device, con
     const double setup = wall_now();
     result.settings = resolve_settings(wanted, scene);
     const Settings& settings = result.settings;
-    const FlatScene flat = flatten(scene);
-    const SceneOnDevice on_device(device, flat);
+    check_memory(scene, settings, device);
+    const SceneOnDevice on_device(device, flatten(scene));
     if (!settings.photons) result.settings.photons = light_paths(on_device, camera_of(settings, scene), settings);
     Integrator integrator(on_device, camera_of(settings, scene), settings);
     if (checkpointing.from) {

@@ -27,4 +27,7 @@ struct Settings {
     bool operator==(const Settings&) const = default;
 };
 
+/// Light paths an iteration: those that are set, or the usual number.
+inline std::uint32_t photons_of(const Settings& settings) { return settings.photons.value_or(usual_light_paths); }
+
 }  // namespace vkcppm

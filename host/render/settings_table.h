@@ -30,7 +30,7 @@ SETTING(photons, std::optional<std::uint32_t>, std::nullopt, "photons", picture,
         "65536 with --direct gathered and of a reference)")
 
 // Absent: 512 on the longer side.
-SETTING(size, std::optional<Extent>, std::nullopt, "size", picture, pixels(65536u, 1u << 27), pixels,
+SETTING(size, std::optional<Extent>, std::nullopt, "size", picture, pixels(65536u, std::size_t(1) << 31), pixels,
         "Pixels (default: 512 on the longer side, in the camera's aspect)")
 
 // Empty: the first; resolved: an index.

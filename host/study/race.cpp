@@ -134,8 +134,7 @@ RaceResult run_race(const Scene& scene, const RaceSettings& race, const Image& r
     const auto sppm = std::ranges::find_if(race.entrants, is_sppm);
     if (sppm != race.entrants.end()) result.baseline = std::size_t(sppm - race.entrants.begin());
 
-    const FlatScene flat = flatten(scene);
-    const SceneOnDevice on_device(device, flat);
+    const SceneOnDevice on_device(device, flatten(scene));
     // One number for all, of the first.
     const Settings& first = race.entrants.front().settings;
     const std::uint32_t photons =

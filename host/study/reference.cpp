@@ -271,11 +271,10 @@ Reference make_reference(const Scene& scene, const ReferenceSettings& wanted, De
     result.settings = resolve_reference(wanted, scene);
     const Settings& settings = result.settings.render;
     const Camera& camera = camera_of(settings, scene);
-    const FlatScene flat = flatten(scene);
-    const SceneOnDevice on_device(device, flat);
+    const SceneOnDevice on_device(device, flatten(scene));
     Paths paths(on_device, camera, result.settings);
     std::unique_ptr<Caustics> caustics;
-    if (splits_near_lamps(flat) || std::ranges::any_of(traits_of(scene), &SurfaceTraits::smooth)) {
+    if (splits_near_lamps(on_device.flat()) || std::ranges::any_of(traits_of(scene), &SurfaceTraits::smooth)) {
         caustics = std::make_unique<Caustics>(on_device, camera, result.settings);
     }
     std::vector<Half*> halves{&paths};

@@ -50,4 +50,9 @@ constexpr bool has_storage(Access access) {
     return access == Access::storage || access == Access::records || access == Access::words;
 }
 
+/// Bytes of a texel of it.
+constexpr std::uint64_t texel_bytes(Access access) {
+    return access == Access::word_texels || access == Access::words ? 4 : 16;
+}
+
 }  // namespace vkcppm

@@ -25,8 +25,13 @@ vk::BufferUsageFlags usage_of(Access access) {
     switch (access) {
         case Access::uniform: return transfer | Usage::eUniformBuffer;
         case Access::storage: return transfer | Usage::eStorageBuffer | Usage::eIndirectBuffer;
-        default: return transfer | Usage::eUniformTexelBuffer | Usage::eStorageBuffer;
+        case Access::uint_texels:
+        case Access::float_texels:
+        case Access::word_texels: return transfer | Usage::eUniformTexelBuffer;
+        case Access::records:
+        case Access::words: return transfer | Usage::eUniformTexelBuffer | Usage::eStorageBuffer;
     }
+    return transfer;
 }
 
 /// The format of the texels; none where the buffer is not read as texels.
@@ -43,18 +48,12 @@ std::optional<vk::Format> texel_format(Access access) {
     return std::nullopt;
 }
 
-void check_limits(const Buffer::Impl& buffer, const vk::PhysicalDeviceLimits& limits) {
-    const auto refuse = [&](const char* what, std::uint64_t value, std::uint64_t limit) {
-        throw Error(ExitCode::out_of_device_memory,
-                    fmt::format("buffer '{}' needs {} {}, the device '{}' allows {}", buffer.name, value, what,
-                                buffer.device->info().name, limit));
-    };
-    const auto format = texel_format(buffer.access);
-    const std::uint64_t texels = buffer.bytes / (format == vk::Format::eR32Uint ? 4 : 16);
-    if (format && texels > limits.maxTexelBufferElements) {
-        refuse("texels", texels, limits.maxTexelBufferElements);
-    }
-    if (buffer.bytes > limits.maxStorageBufferRange) refuse("bytes", buffer.bytes, limits.maxStorageBufferRange);
+void check_limits(const Buffer::Impl& buffer) {
+    const std::uint64_t most = buffer.device->largest_buffer(buffer.access);
+    if (buffer.bytes <= most) return;
+    throw Error(ExitCode::out_of_device_memory,
+                fmt::format("buffer '{}' needs {} bytes, the device '{}' allows {}", buffer.name, buffer.bytes,
+                            buffer.device->info().name, most));
 }
 
 /// Some drivers, lavapipe for one, promise more memory than there is, and the system ends the program that believes
@@ -125,7 +124,7 @@ Buffer::Buffer(Device& device, Binding binding, std::uint64_t bytes) : impl_(std
     std::ranges::replace(impl.name, '_', ' ');
     impl.bytes = (std::max<std::uint64_t>(bytes, 16) + 15) / 16 * 16;  // whole texels
     impl.access = bound_buffer(binding).access;
-    check_limits(impl, gpu.limits);
+    check_limits(impl);
     check_heap(impl);
     guarded(fmt::format("allocating buffer '{}' of {} bytes ({} bytes are allocated)", impl.name, impl.bytes,
                         gpu.allocated),
@@ -161,33 +160,33 @@ Buffer& Buffer::operator=(Buffer&&) noexcept = default;
 
 std::uint64_t Buffer::bytes() const { return impl_->bytes; }
 
-void Buffer::write(std::span<const std::byte> data) {
-    assert(data.size() <= impl_->bytes);
+void Buffer::write(std::span<const std::byte> data, std::uint64_t offset) {
+    assert(offset + data.size() <= impl_->bytes);
     if (data.empty()) return;
     if (impl_->mapped) {
-        std::memcpy(impl_->mapped, data.data(), data.size());
+        std::memcpy(impl_->mapped + offset, data.data(), data.size());
         return;
     }
     through_staging(
         *impl_->device, data.size(), {mappable},
         [&](std::byte* memory) { std::memcpy(memory, data.data(), data.size()); },
         [&](vk::raii::CommandBuffer& commands, vk::Buffer staging) {
-            commands.copyBuffer(staging, **impl_->buffer, vk::BufferCopy(0, 0, data.size()));
+            commands.copyBuffer(staging, **impl_->buffer, vk::BufferCopy(0, offset, data.size()));
         },
         [](std::byte*) {});
 }
 
-void Buffer::read(std::span<std::byte> data) const {
-    assert(data.size() <= impl_->bytes);
+void Buffer::read(std::span<std::byte> data, std::uint64_t offset) const {
+    assert(offset + data.size() <= impl_->bytes);
     if (data.empty()) return;
     if (impl_->mapped && (impl_->cached || data.size() <= read_uncached)) {
-        std::memcpy(data.data(), impl_->mapped, data.size());
+        std::memcpy(data.data(), impl_->mapped + offset, data.size());
         return;
     }
     through_staging(
         *impl_->device, data.size(), {mappable | Memory::eHostCached, mappable}, [](std::byte*) {},
         [&](vk::raii::CommandBuffer& commands, vk::Buffer staging) {
-            commands.copyBuffer(**impl_->buffer, staging, vk::BufferCopy(0, 0, data.size()));
+            commands.copyBuffer(**impl_->buffer, staging, vk::BufferCopy(offset, 0, data.size()));
         },
         [&](const std::byte* memory) { std::memcpy(data.data(), memory, data.size()); });
 }

@@ -28,16 +28,21 @@ public:
 
     std::uint64_t bytes() const;
 
-    /// Writes `data` at the start. Asserts that it fits. The device must be idle.
-    template <typename T> void upload(std::span<const T> data) { write(std::as_bytes(data)); }
+    /// Writes `data` from byte `offset` on. Asserts that it fits. The device must be idle.
+    template <typename T> void upload(std::span<const T> data, std::uint64_t offset = 0) {
+        write(std::as_bytes(data), offset);
+    }
     template <typename T> void upload(const std::vector<T>& data) { upload(std::span<const T>(data)); }
-    template <typename T> void upload_value(const T& value) { write(std::as_bytes(std::span<const T>(&value, 1))); }
+    template <typename T> void upload_value(const T& value) { write(std::as_bytes(std::span<const T>(&value, 1)), 0); }
 
-    /// Reads `count` values from the start. Asserts that there are as many. The device must be idle.
-    template <typename T> std::vector<T> download(std::size_t count) const {
+    /// Reads `count` values from byte `offset` on. Asserts that there are as many. The device must be idle.
+    template <typename T> std::vector<T> download(std::size_t count, std::uint64_t offset = 0) const {
         std::vector<T> data(count);
-        read(std::as_writable_bytes(std::span<T>(data)));
+        download_to(std::span<T>(data), offset);
         return data;
+    }
+    template <typename T> void download_to(std::span<T> data, std::uint64_t offset = 0) const {
+        read(std::as_writable_bytes(data), offset);
     }
     template <typename T> T download_value() const { return download<T>(1).front(); }
 
@@ -45,8 +50,8 @@ public:
     const Impl& impl() const { return *impl_; }
 
 private:
-    void write(std::span<const std::byte> data);
-    void read(std::span<std::byte> data) const;
+    void write(std::span<const std::byte> data, std::uint64_t offset);
+    void read(std::span<std::byte> data, std::uint64_t offset) const;
     std::unique_ptr<Impl> impl_;
 };
 

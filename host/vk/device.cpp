@@ -4,11 +4,13 @@
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <thread>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/process.h"
 #include "shared/types.h"
 #include "vk/binding.h"
 #include "vk/device_impl.h"
@@ -130,6 +132,9 @@ DeviceInfo describe(const vk::raii::PhysicalDevice& physical, std::uint32_t inde
             info.memory_bytes = std::max<std::uint64_t>(info.memory_bytes, memory.memoryHeaps[i].size);
         }
     }
+    // The memory of software Vulkan is the host's, but Mesa 22.3 says that of every machine.
+    constexpr std::uint64_t said_of_all = std::uint64_t(2) << 30;
+    if (info.type == "cpu" && info.memory_bytes == said_of_all) info.memory_bytes = total_memory();
     info.unusable = missing(physical);
     return info;
 }
@@ -331,9 +336,13 @@ std::uint32_t Device::busy_lanes() const {
     return 512 * std::max(1u, std::thread::hardware_concurrency());
 }
 
-std::uint64_t Device::largest_texels() const {
+std::uint64_t Device::largest_buffer(Access access) const {
     const auto& limits = impl_->limits;
-    return std::min<std::uint64_t>(limits.maxStorageBufferRange, std::uint64_t(limits.maxTexelBufferElements) * 16);
+    std::uint64_t bytes = std::numeric_limits<std::uint64_t>::max();
+    if (access == Access::uniform) bytes = limits.maxUniformBufferRange;
+    if (has_storage(access)) bytes = limits.maxStorageBufferRange;
+    if (has_texels(access)) bytes = std::min(bytes, limits.maxTexelBufferElements * texel_bytes(access));
+    return bytes;
 }
 
 bool Device::reuse_pipelines(std::span<const std::byte> data) {

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "vk/binding.h"
+
 namespace vkcppm {
 
 /// One physical device, as `vkcppm devices` lists it.
@@ -18,7 +20,7 @@ struct DeviceInfo {
     std::string driver;              // name and version
     std::string api_version;         // "1.3.230"
     std::string uuid;                // 32 hexadecimal digits in 8-4-4-4-12 form
-    std::uint64_t memory_bytes = 0;  // largest device-local heap
+    std::uint64_t memory_bytes = 0;  // largest device-local heap; of software Vulkan the host's memory
     std::string unusable;            // empty, or why the device cannot run the kernels
 };
 
@@ -47,8 +49,9 @@ public:
     std::uint32_t step_budget() const;
     /// Invocations that keep it busy: work with a choice is cut into about as many.
     std::uint32_t busy_lanes() const;
-    /// Bytes of the largest buffer of texels of 16 bytes.
-    std::uint64_t largest_texels() const;
+    /// Bytes of the largest buffer of that access: what is but read as texels may be larger than what is bound as a
+    /// storage buffer.
+    std::uint64_t largest_buffer(Access access) const;
     /// Bytes of buffers alive now, and at most so far.
     std::uint64_t allocated_bytes() const;
     std::uint64_t peak_bytes() const;

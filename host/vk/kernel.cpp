@@ -32,28 +32,34 @@ Specialization of_module(std::span<const std::uint32_t> spirv, const Specializat
 struct Bindings::Impl {
     Device* device = nullptr;
     std::optional<vk::raii::DescriptorPool> pool;
-    std::optional<vk::raii::DescriptorSet> set;
+    std::vector<vk::raii::DescriptorSet> sets;
 };
 
-Bindings::Bindings(Device& device) : impl_(std::make_unique<Impl>()) {
-    guarded("creating the descriptor set", [&] {
+Bindings::Bindings(Device& device, std::uint32_t sets) : impl_(std::make_unique<Impl>()) {
+    guarded("creating the descriptor sets", [&] {
         Device::Impl& impl = device.impl();
         impl_->device = &device;
         std::map<vk::DescriptorType, std::uint32_t> counts;
         for (const vk::DescriptorSetLayoutBinding& binding : layout_bindings()) ++counts[binding.descriptorType];
         std::vector<vk::DescriptorPoolSize> sizes;
-        for (const auto& [type, count] : counts) sizes.emplace_back(type, count);
-        impl_->pool.emplace(
-            *impl.device, vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes));
-        const vk::DescriptorSetLayout set_layout = **impl.set_layout;
-        vk::raii::DescriptorSets sets(*impl.device, vk::DescriptorSetAllocateInfo(**impl_->pool, set_layout));
-        impl_->set.emplace(std::move(sets.front()));
+        for (const auto& [type, count] : counts) sizes.emplace_back(type, count * sets);
+        impl_->pool.emplace(*impl.device, vk::DescriptorPoolCreateInfo(
+                                              vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, sets, sizes));
+        const std::vector<vk::DescriptorSetLayout> layouts(sets, **impl.set_layout);
+        impl_->sets = vk::raii::DescriptorSets(*impl.device, vk::DescriptorSetAllocateInfo(**impl_->pool, layouts));
     });
 }
 
 Bindings::~Bindings() = default;
 
+std::uint32_t Bindings::sets() const { return std::uint32_t(impl_->sets.size()); }
+
 void Bindings::bind(Binding binding, const Buffer& buffer) {
+    for (std::uint32_t set = 0; set < sets(); ++set) bind(binding, buffer, set);
+}
+
+void Bindings::bind(Binding binding, const Buffer& buffer, std::uint32_t set) {
+    const vk::DescriptorSet written = *impl_->sets.at(set);
     const auto& source = buffer.impl();
     const Access access = bound_buffer(binding).access;
     assert(access == source.access);
@@ -61,16 +67,16 @@ void Bindings::bind(Binding binding, const Buffer& buffer) {
     std::vector<vk::WriteDescriptorSet> writes;
     const auto number = std::uint32_t(binding);
     if (access == Access::uniform) {
-        writes.emplace_back(**impl_->set, number, 0, 1, vk::DescriptorType::eUniformBuffer, nullptr, &info);
+        writes.emplace_back(written, number, 0, 1, vk::DescriptorType::eUniformBuffer, nullptr, &info);
     }
     if (has_storage(access)) {
-        writes.emplace_back(**impl_->set, number, 0, 1, vk::DescriptorType::eStorageBuffer, nullptr, &info);
+        writes.emplace_back(written, number, 0, 1, vk::DescriptorType::eStorageBuffer, nullptr, &info);
     }
     vk::BufferView view;
     if (has_texels(access)) {
         view = **source.view;
-        writes.emplace_back(**impl_->set, TEXELS_BINDING + number, 0, 1, vk::DescriptorType::eUniformTexelBuffer,
-                            nullptr, nullptr, &view);
+        writes.emplace_back(written, TEXELS_BINDING + number, 0, 1, vk::DescriptorType::eUniformTexelBuffer, nullptr,
+                            nullptr, &view);
     }
     impl_->device->impl().device->updateDescriptorSets(writes, {});
 }
@@ -145,11 +151,14 @@ void Commands::begin() {
         impl_->stamped = 0;
         impl_->commands->reset();
         impl_->commands->begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
-        const vk::DescriptorSet set = **impl_->bindings->impl().set;
-        impl_->commands->bindDescriptorSets(vk::PipelineBindPoint::eCompute, **impl_->device->impl().layout, 0, set,
-                                            {});
+        use(0);
         stamp();
     });
+}
+
+void Commands::use(std::uint32_t set) {
+    const vk::DescriptorSet used = *impl_->bindings->impl().sets.at(set);
+    impl_->commands->bindDescriptorSets(vk::PipelineBindPoint::eCompute, **impl_->device->impl().layout, 0, used, {});
 }
 
 /// Takes the time once all kernels before have ended. A stamp before them could be taken while the driver still holds

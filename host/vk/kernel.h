@@ -15,17 +15,20 @@ namespace vkcppm {
 
 class Device;
 
-/// The descriptor set: which buffer stands at which binding. Rebinding needs an idle device.
+/// Descriptor sets of one layout: which buffer stands at which binding. Rebinding needs an idle device.
 class Bindings {
 public:
-    explicit Bindings(Device& device);
+    explicit Bindings(Device& device, std::uint32_t sets = 1);
     ~Bindings();
     Bindings(const Bindings&) = delete;
     Bindings& operator=(const Bindings&) = delete;
 
-    /// Binds it, and where kernels read it as texels its view. Asserts that the buffer was made for a binding of that
-    /// access. It must outlive every launch.
+    std::uint32_t sets() const;
+
+    /// Binds it in every set or in one, and where kernels read it as texels its view. Asserts that the buffer was made
+    /// for a binding of that access. It must outlive every launch.
     void bind(Binding binding, const Buffer& buffer);
+    void bind(Binding binding, const Buffer& buffer, std::uint32_t set);
 
     struct Impl;
     Impl& impl() const { return *impl_; }
@@ -71,7 +74,9 @@ public:
     Commands(const Commands&) = delete;
     Commands& operator=(const Commands&) = delete;
 
+    /// Launches that follow are with the first descriptor set, until use() names another.
     void begin();
+    void use(std::uint32_t set);
     /// At least `invocations` invocations in whole work groups, folded into y beyond 65,535 groups.
     void launch(const Kernel& kernel, std::uint64_t invocations, const gpu::Launch& push);
     /// As many work groups as three words of `groups` from byte `offset` say when it is due, none where the first is 0.

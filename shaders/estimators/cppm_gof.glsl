@@ -6,6 +6,6 @@
 
 #define HOOK_RECORD STATISTIC_tally
 void record(uint pixel, Accepted photon, bool inside) {
-    bool flip = random4(params.seed, launch.iteration, STREAM_GATHER, pixel, photon.index).x < 0.5;
+    bool flip = random4(params.seed, launch.iteration, STREAM_GATHER, picture_pixel(pixel), photon.index).x < 0.5;
     count(cell_bin(flip ? -photon.v : photon.v, photon.q));
 }

@@ -32,7 +32,7 @@ LIGHT_RAYS(UPDATES)
                                    //   it is taken
 
 struct EyePath {
-    uint pixel;
+    uint pixel;            // in the band
     EyeState at;           // its next ray, and what it has found
     LightRays light_rays;  // that it has chosen so far
     HitPosition position;  // where it has ended; HIT_UNFINISHED: it, or its ray to a light, goes on next round
@@ -174,7 +174,7 @@ Vertex meet(inout EyePath path, Hit hit) {
     if (HAS_VOLUME) attenuate(path, transmittance(path.at.flags, v.surface, hit.t));
     v.u = vec4(0.0);
     if (HAS_ROUGH || HAS_ALPHA) {
-        v.u = random4(params.seed, launch.iteration, STREAM_EYE, path.pixel, LOBE_DIMENSIONS + v.depth);
+        v.u = random4(params.seed, launch.iteration, STREAM_EYE, picture_pixel(path.pixel), LOBE_DIMENSIONS + v.depth);
     }
     return v;
 }
@@ -215,7 +215,7 @@ void meet_emission(inout EyePath path, Vertex v) {
 
 // How the surface scatters, and what the path has to choose from there.
 void weigh_lobes(inout EyePath path, inout Vertex v) {
-    float ior = index_for_path(v.material, STREAM_EYE, path.pixel, path.at.flags, path.at.throughput);
+    float ior = index_for_path(v.material, STREAM_EYE, picture_pixel(path.pixel), path.at.flags, path.at.throughput);
     v.throughput = path.at.throughput;
     v.bsdf = bsdf_of(v.material, ior, v.surface.front);
     v.lobes = lobes_of(v.bsdf, v.surface, v.wo);
@@ -247,13 +247,14 @@ vec3 light_from(EyePath path, Vertex v, LightSample light) {
 // proportion to what it brings (resampled importance sampling; Talbot, Cline and Egbert 2005).
 void ask(inout EyePath path, Vertex v) {
     uint dimension = LIGHT_DIMENSIONS + v.depth;
-    uvec4 bits = random_words(params.seed, 0u, STREAM_EYE, path.pixel, dimension);
+    uint pixel = picture_pixel(path.pixel);
+    uvec4 bits = random_words(params.seed, 0u, STREAM_EYE, pixel, dimension);
     for (uint g = 0u; g < GROUPS; ++g) {
         AskedGroup group = params.asked[g];
         uvec2 seeds = bits.xy;
         for (uint i = 0u; i < group.candidates; ++i) {
             dimension += CANDIDATE_DIMENSIONS;
-            vec4 u = random4(params.seed, launch.iteration, STREAM_EYE, path.pixel, dimension);
+            vec4 u = random4(params.seed, launch.iteration, STREAM_EYE, pixel, dimension);
             uvec2 pair = sobol_pair(launch.iteration * group.candidates + i, seeds);
             LightSample light = sample_light(group, pair, u.xy, v.surface.position);
             vec3 brings = light_from(path, v, light) / float(group.candidates);
@@ -286,7 +287,8 @@ bool passes_pane(Bsdf bsdf, uint lobe) { return !HAS_SPLIT && lobe == LOBE_TRANS
 
 // A lobe, or LOBE_DIFFUSE to gather, by the probabilities of v.lobes.
 uint choose(inout EyePath path, Vertex v) {
-    float choice = stratified(params.seed, launch.iteration, path.pixel, v.depth + FIRST_BOUNCE_DIMENSION);
+    uint dimension = v.depth + FIRST_BOUNCE_DIMENSION;
+    float choice = stratified(params.seed, launch.iteration, picture_pixel(path.pixel), dimension);
     float inverse_probability;
     uint lobe = choose_lobe(v.lobes, choice, inverse_probability);
     if (lobe != LOBE_NONE) {

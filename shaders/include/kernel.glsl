@@ -53,8 +53,10 @@ uint invocation_pixel() {
 }
 
 // True where this launch must leave everything as it is: another pass than `own` (PASS_* bits) waits for the host, or
-// an iteration before this one does.
-bool blocked(uint own) { return (status.blocked & ~own) != 0u || status.completed != launch.iteration; }
+// an iteration, or a band of the picture, before this one does.
+bool blocked(uint own) {
+    return (status.blocked & ~own) != 0u || status.completed != launch.iteration || status.band != launch.band;
+}
 
 // Unfinished work of pass `own` in its last round blocks the passes after it; lanes of the same pass go on.
 void block_after(uint own) {
@@ -66,6 +68,9 @@ void count_rays(uint rays) {
     if (before + rays < before) atomicAdd(status.rays_high, 1u);
 }
 
-uint pixel_count() { return params.width * params.height; }
+// A picture is gone through in bands of pixels, one where it is small. Buffers are indexed by the pixel's place in its
+// band; what a pixel is in the picture, and draws its random numbers for, is its place there.
+uint pixel_count() { return launch.pixels; }
+uint picture_pixel(uint pixel) { return launch.first_pixel + pixel; }
 
 #endif

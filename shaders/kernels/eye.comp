@@ -87,7 +87,7 @@ void main() {
     if (pixel >= pixel_count() || blocked(PASS_EYE)) return;
     EyePath path = begin_eye_path(pixel);
     if (launch.round == 0u) {
-        camera_ray(pixel, launch.iteration, path.at.origin, path.at.direction, path.at.distance);
+        camera_ray(picture_pixel(pixel), launch.iteration, path.at.origin, path.at.direction, path.at.distance);
     } else {
         if (!load(path)) return;
     }

@@ -54,7 +54,7 @@ void remake_surface(inout Receiver r) {
     SurfaceMaterial material = material_at(hit, -r.outgoing, r.surface);
     uint flags = PATH_OUTSIDE;
     vec3 weight = vec3(1.0);
-    float ior = index_for_path(material, STREAM_EYE, r.pixel, flags, weight);
+    float ior = index_for_path(material, STREAM_EYE, picture_pixel(r.pixel), flags, weight);
     r.bsdf = bsdf_of(material, ior, r.surface.front);
 }
 

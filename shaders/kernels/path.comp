@@ -119,8 +119,8 @@ bool meet(inout TraceState state, uint pixel, uint path, Hit hit, Surface surfac
         alive = false;
     } else {
         state.radiance += state.throughput * met_emission(state, surface, material);
-        float ior = index_for_path(material, STREAM_PATH, pixel + state.done * pixel_count(), state.flags,
-                                   state.throughput);
+        float ior = index_for_path(material, STREAM_PATH, pixel + state.done * (params.width * params.height),
+                                   state.flags, state.throughput);
         Bsdf bsdf = bsdf_of(material, ior, surface.front);
         LobeWeights lobes = lobes_of(bsdf, surface, -state.direction);
         // Lamps seen by way of weak lobes must not be missed.
@@ -167,7 +167,9 @@ void main() {
         bool shadow = has_light_ray(state.light_rays);
         LightRay light_ray = state.light_rays.of[0];
         float from_eye;
-        if ((state.flags & PATH_BOUNCES) == 0u) camera_ray(pixel, path, state.origin, state.direction, from_eye);
+        if ((state.flags & PATH_BOUNCES) == 0u) {
+            camera_ray(picture_pixel(pixel), path, state.origin, state.direction, from_eye);
+        }
         vec3 origin = shadow ? light_ray.origin : state.origin;
         vec3 direction = shadow ? light_ray.direction : state.direction;
         bool fresh = steps + 1 == int(params.step_budget);
@@ -193,7 +195,7 @@ void main() {
                 state.light_rays.of[0] = light_ray;
             } else {
                 ++state.flags;
-                state.ended = meet(state, pixel, path, hit, surface, material, coverage) ? 0u : 1u;
+                state.ended = meet(state, picture_pixel(pixel), path, hit, surface, material, coverage) ? 0u : 1u;
             }
         }
         if (state.ended != 0u && !has_light_ray(state.light_rays)) end_path(state);

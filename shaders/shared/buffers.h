@@ -6,7 +6,8 @@
 //   name     of the array in kernels, Binding::name on the host
 //   Element  what it is an array of: a struct of types.h, or uint, float, uvec2, vec3, vec4
 //   per      what it has entries for, as --stats counts memory (Per of host/render/buffers.h); the first row of
-//            each has one entry for each
+//            each that is not there for some features alone has one entry for each
+//            pixel: of the picture, in as many buffers as it has bands; band_pixel: of a band, one buffer for all
 //   entries  how many for each (Entries of host/render/buffers.h)
 //   access   uniform      as a uniform block
 //            storage      as a storage buffer
@@ -46,22 +47,22 @@
 #define ENVIRONMENT_ALIAS(ROW) ROW(14, environment_alias, uvec2, sky_pixel, uploaded, word_texels, scratch, never)
 #define ASKED_LIGHTS(ROW)      ROW(15, asked_lights, AskedLight, light, uploaded, uint_texels, scratch, never)
 // Of pixels.
-#define HIT_POSITION(ROW)      ROW(16, hit_position, HitPosition, pixel, one, records, scratch, eye)
-#define HIT_WEIGHT(ROW)        ROW(17, hit_weight, HitWeight, pixel, one, records, scratch, eye)
-#define HIT_EMISSION(ROW)      ROW(18, hit_emission, HitEmission, pixel, one, records, scratch, eye)
+#define HIT_POSITION(ROW)      ROW(16, hit_position, HitPosition, band_pixel, one, records, scratch, eye)
+#define HIT_WEIGHT(ROW)        ROW(17, hit_weight, HitWeight, band_pixel, one, records, scratch, eye)
+#define HIT_EMISSION(ROW)      ROW(18, hit_emission, HitEmission, band_pixel, one, records, scratch, eye)
 #define AOVS(ROW)              ROW(19, aovs, Aovs, pixel, where_aovs, storage, carried, eye)
-#define HIT_SURFACE(ROW)       ROW(20, hit_surface, HitSurface, pixel, where_glossy, records, scratch, apart)
-#define EYE_PATHS(ROW)         ROW(21, eye_paths, EyeState, pixel, one, storage, scratch, never)
-#define SEARCHES(ROW)          ROW(22, searches, uint, pixel, one, storage, scratch, never)
-#define CURSORS(ROW)           ROW(23, cursors, Cursor, pixel, one, storage, scratch, never)
-#define NEAREST(ROW)           ROW(24, nearest, float, pixel, nearest, storage, scratch, never)
-#define GATHERED(ROW)          ROW(25, gathered, Gathered, pixel, one, records, scratch, gather)
+#define HIT_SURFACE(ROW)       ROW(20, hit_surface, HitSurface, band_pixel, where_glossy, records, scratch, apart)
+#define EYE_PATHS(ROW)         ROW(21, eye_paths, EyeState, band_pixel, one, storage, scratch, never)
+#define SEARCHES(ROW)          ROW(22, searches, uint, band_pixel, one, storage, scratch, never)
+#define CURSORS(ROW)           ROW(23, cursors, Cursor, band_pixel, one, storage, scratch, never)
+#define NEAREST(ROW)           ROW(24, nearest, float, band_pixel, nearest, storage, scratch, never)
+#define GATHERED(ROW)          ROW(25, gathered, Gathered, band_pixel, one, records, scratch, gather)
 #define FILM(ROW)              ROW(26, film, Film, pixel, one, words, carried, update)
 #define PIXELS(ROW)            ROW(27, pixels, PixelState, pixel, one, records, carried, from_knn)
 #define TALLY(ROW)             ROW(28, tally, uint, pixel, tallies, words, carried, from_knn)
 #define MOMENTS(ROW)           ROW(29, moments, float, pixel, moments, words, carried, from_knn)
-#define IMAGE(ROW)             ROW(30, image, vec3, pixel, one, storage, scratch, never)
-#define TRACES(ROW)            ROW(31, traces, TraceState, pixel, where_traced, storage, scratch, never)
+#define IMAGE(ROW)             ROW(30, image, vec3, band_pixel, one, storage, scratch, never)
+#define TRACES(ROW)            ROW(31, traces, TraceState, band_pixel, where_traced, storage, scratch, never)
 // Of photons: [lanes x capacity] slots, and sorted once a level of the grid.
 #define PATHS(ROW)             ROW(32, paths, PathState, photon_lane, one, storage, scratch, never)
 #define PHOTONS(ROW)           ROW(33, photons, Photon, photon_slot, one, records, scratch, apart)
@@ -74,8 +75,8 @@
 // [rings x F_QUANTILES] thresholds of the F-tests.
 #define QUANTILES(ROW)         ROW(40, quantiles, float, rest, uploaded, storage, scratch, never)
 // Of pixels again: searches that are unfinished.
-#define SEARCH_STATES(ROW)     ROW(41, search_states, SearchState, pixel, one, storage, scratch, never)
-#define LIGHT_RAYS(ROW)        ROW(42, light_rays, LightRay, pixel, asked_groups, storage, scratch, never)
+#define SEARCH_STATES(ROW)     ROW(41, search_states, SearchState, band_pixel, one, storage, scratch, never)
+#define LIGHT_RAYS(ROW)        ROW(42, light_rays, LightRay, band_pixel, asked_groups, storage, scratch, never)
 
 #define SCENE_BUFFERS(ROW)                                                                               \
     TRIANGLES(ROW) SHADING(ROW) TEXCOORDS(ROW) VERTEX_COLORS(ROW) TANGENTS(ROW) MATERIALS(ROW) TEXTURES(ROW) \

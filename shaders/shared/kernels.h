@@ -14,11 +14,10 @@
 #endif
 
 // Of an iteration, in its order; `picture`: of none, and not on a render's clock; `trace`: of the path tracer.
-#define PASSES(ROW) ROW(eye) ROW(photon) ROW(grid) ROW(knn) ROW(gather) ROW(update) ROW(picture) ROW(trace)
+#define PASSES(ROW) ROW(photon) ROW(grid) ROW(eye) ROW(knn) ROW(gather) ROW(update) ROW(picture) ROW(trace)
 
 // clang-format off
 #define KERNELS(ROW)                                                  \
-    ROW(eye,           eye,     groups,           one,  PASS_EYE)    \
     ROW(photon,        photon,  groups_and_waits, one,  PASS_PHOTON) \
     ROW(grid_plan,     grid,    one,              one,  0u)          \
     ROW(grid_clear,    grid,    one,              one,  0u)          \
@@ -29,6 +28,8 @@
     ROW(scan_apply,    grid,    one,              one,  0u)          \
     ROW(radix_count,   grid,    one,              one,  0u)          \
     ROW(radix_scatter, grid,    one,              one,  0u)          \
+    ROW(eye,           eye,     groups,           one,  PASS_EYE)    \
+    ROW(searches,      knn,     one,              one,  0u)          \
     ROW(knn,           knn,     one,              each, PASS_KNN)    \
     ROW(gather,        gather,  groups,           each, PASS_GATHER) \
     ROW(update,        update,  one,              each, 0u)          \

@@ -497,7 +497,8 @@ struct Status {
     uint stored;       // photons stored since the host last cleared it
     uint rays_high;
     uint levels;       // that the grid is to have
-    uint searches;     // pixels that gather in this iteration without a seeded radius
+    uint band;         // of the picture, that is next in this iteration: from the eye pass on
+    uint searches;     // its pixels that gather in this iteration without a seeded radius
     uvec3 search_groups;  // work groups for them
     // From here on what the next plan of the grid is made from, and so what a checkpoint holds.
     uint photons;      // stored in the last iteration
@@ -571,13 +572,18 @@ struct Launch {
     uint round VKCPPM_ZERO;        // of a resumable pass
     uint last_round VKCPPM_ZERO;   // 1: unfinished work blocks the passes that follow
     uint paths VKCPPM_ZERO;        // path: paths a pixel
-    uint search_group VKCPPM_ZERO; // grid_clear: invocations a work group of knn
+    uint search_group VKCPPM_ZERO; // searches: invocations a work group of knn
     uint level VKCPPM_ZERO;        // grid_key: of the grid
     uint scan_first VKCPPM_ZERO;   // scans: the first counter
     uint scan_count VKCPPM_ZERO;   //   and how many
     uint digit_shift VKCPPM_ZERO;  // radix: bits below the digit
     uint reads_b VKCPPM_ZERO;      // radix: 1: from pairs_b to pairs_a, 0: from pairs_a to pairs_b
     uint plans_next VKCPPM_ZERO;   // update: 1: the next grid is planned, the radii are counted for it
+    // Of the band of the picture that the buffers of pixels hold, or are bound to: include/kernel.glsl.
+    uint band VKCPPM_ZERO;         // its number; 0 in the passes of photons
+    uint last_band VKCPPM_ZERO;    // advance: 1: no other comes after it
+    uint first_pixel VKCPPM_ZERO;  // of the picture's
+    uint pixels VKCPPM_ZERO;       // in it
     uint argument VKCPPM_ZERO;     // kernels of tests and benchmarks: their file says what
     uint items VKCPPM_ZERO;        //   and how many they go over
 };

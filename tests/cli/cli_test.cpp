@@ -272,8 +272,10 @@ TEST_F(Cli, EveryMisuseHasItsExitCodeAndItsLine) {
         {{"-o", "/dev/null"}, 73, {"/dev/null"}},
         {{"-o", "."}, 73, {"folder"}},
         {{"--png", "missing/out.png"}, 73, {"missing/out.png"}},
-        {{"--size", "65536x65536"}, 2, {"--size", "4294967296 pixels", "134217728"}},
-        {{"--size", "16384x8192", "--knn", "256"}, 71, {"buffer '", "needs", "bytes", "the device '", "allows"}},
+        {{"--size", "65536x65536"}, 2, {"--size", "4294967296 pixels", "2147483648"}},
+        {{"--size", "65536x32768"},
+         71,
+         {"the render needs ", " for 65536x32768 pixels", "on the device '", "; it has ", ": --size ", " would fit"}},
         {{"--stats", "missing/out.json"}, 73, {"missing/out.json"}},
     };
     for (const Misuse& misuse : all) {

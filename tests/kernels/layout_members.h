@@ -37,8 +37,8 @@
 #define MEMBERS_CURSOR X(cell) X(photon)
 #define MEMBERS_GRID X(origin) X(levels) X(dims) X(cell) X(inverse_cell) X(reach) X(first) X(entries)
 #define MEMBERS_STATUS X(blocked) X(completed) X(capacity) X(stuck) X(invalid) X(rays) \
-    X(stored) X(rays_high) X(levels) X(searches) X(search_groups) X(photons) X(radius_histogram) X(photon_histogram) \
-    X(photon_histogram_high)
+    X(stored) X(rays_high) X(levels) X(band) X(searches) X(search_groups) X(photons) X(radius_histogram) \
+    X(photon_histogram) X(photon_histogram_high)
 #define MEMBERS_PARAMS \
     X(eye) X(width) X(right) X(height) X(up) X(seed) X(forward) X(pixel_radius) X(bounds_low) X(photons) \
     X(bounds_high) X(photons_per_lane) X(photon_lanes) X(photon_capacity) X(bounds_radius) X(max_depth) \
@@ -50,4 +50,5 @@
     X(end) X(layer) X(direct)
 #define MEMBERS_SEARCH_STATE X(largest) X(largest_index) X(radius) X(kept)
 #define MEMBERS_LAUNCH X(iteration) X(round) X(last_round) X(paths) X(search_group) X(level) X(scan_first) \
-    X(scan_count) X(digit_shift) X(reads_b) X(plans_next) X(argument) X(items)
+    X(scan_count) X(digit_shift) X(reads_b) X(plans_next) X(band) X(last_band) X(first_pixel) X(pixels) X(argument) \
+    X(items)

@@ -196,12 +196,12 @@ TEST_F(Race, SettingsAreRefusedWithTheEntrant) {
 TEST_F(Race, WhatDoesNotFitTheDeviceTogetherIsToldWithTheEntrant) {
     const Scene scene = test::project_scene("torus");
     RaceSettings race = race_of({"cppm", "sppm"});
-    race.entrants[1].settings.size = Extent{16384, 8192};
+    race.entrants[1].settings.size = Extent{65536, 32768};
     const auto error =
         test::thrown_by([&] { run_race(scene, resolve_race(race, scene), black(), test::plain_device(), go_on); });
     ASSERT_TRUE(error);
     EXPECT_EQ(error->code(), ExitCode::out_of_device_memory);
-    for (const char* told : {"entrant 'sppm'", "buffer '", "hold", "bytes"}) {
+    for (const char* told : {"entrant 'sppm'", "the render needs ", "hold", "bytes"}) {
         EXPECT_NE(std::string(error->what()).find(told), std::string::npos) << error->what();
     }
 }

@@ -325,7 +325,8 @@ TEST_F(FilmSum, ManyAdditionsDoNotStagnate) {
     Commands commands(plain_device(), bindings);
     const auto run = [&](std::uint64_t launches) {
         commands.begin();
-        for (std::uint64_t i = 0; i < launches; ++i) commands.launch(kernel, count, {.iteration = 0, .last_round = 1});
+        const gpu::Launch push{.iteration = 0, .last_round = 1, .pixels = count};
+        for (std::uint64_t i = 0; i < launches; ++i) commands.launch(kernel, count, push);
         const std::vector<Timing> timings = commands.finish();
         EXPECT_EQ(timings.size(), launches) << "every launch is timed";
         for (const Timing& timing : timings) ASSERT_TRUE(timing.seconds >= 0.0 && timing.seconds < 60.0);

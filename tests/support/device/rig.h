@@ -21,12 +21,12 @@ struct StoredPath {
 };
 
 struct Rig {
-    Rig(Scene scene_, const Settings& wanted, Device& on = device())
+    Rig(Scene scene_, const Settings& wanted, Device& on = device(), std::uint64_t most_band_pixels = 0)
         : scene(std::move(scene_)),
           settings(resolve_settings(wanted, scene)),
           flat(flatten(scene)),
           on_device(on, flat),
-          integrator(on_device, scene.cameras.at(0), settings) {}
+          integrator(on_device, scene.cameras.at(0), settings, {}, most_band_pixels) {}
 
     /// The whole buffer of that binding as values of T.
     template <typename T> std::vector<T> all(Binding binding) {
