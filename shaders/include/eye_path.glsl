@@ -99,7 +99,10 @@ void leave_unfinished(inout EyePath path, bool fresh) {
 }
 
 void store(EyePath path) {
-    if (HAS_AOVS && path.position.state != HIT_UNFINISHED) add_layers(path.pixel, path.at.layer);
+    if (HAS_AOVS && path.position.state != HIT_UNFINISHED) {
+        add_layers(path.pixel, path.at.layer);
+        if (HAS_ROUGH) eye_paths[path.pixel].flags = path.at.flags;  // for the gather
+    }
     if (path.position.state == HIT_UNFINISHED) {
         eye_paths[path.pixel] = path.at;
         for (uint g = 0u; EYE_PATHS_ASK && g < GROUPS; ++g) {

@@ -23,6 +23,7 @@
 #include "include/surface.glsl"
 #include "estimators/estimator.glsl"
 
+EYE_PATHS(READS)
 SORTED_FLUX(RECORDS)
 
 // By which what arrives is divided, at least: photons at grazing angles would count for any number of others.
@@ -72,6 +73,9 @@ Receiver receiver_of(uint pixel, HitPosition hit) {
     if (HAS_GLOSS) remake_surface(r);
     return r;
 }
+
+// True where the surface is the first that is not perfectly smooth: photons there have the layers that they say.
+bool is_first_seen(uint pixel) { return !HAS_ROUGH || (eye_paths[pixel].flags & PATH_STRAIGHT) != 0u; }
 
 vec3 layer_flux[LAYERS] = vec3[](vec3(0.0), vec3(0.0));  // parts of the sum, where there are further channels
 
@@ -184,7 +188,7 @@ void main() {
         weigh_queue(r, queued, sum, steps);
     }
     flush(pixel);
-    if (HAS_AOVS) {
+    if (HAS_AOVS && is_first_seen(pixel)) {
         // As the update pass, of the photons of this round.
         vec3 factor = hit_weight_at(pixel).weight * (params.inverse_paths / (PI * r.radius2));
         for (uint i = 0u; i < LAYERS; ++i) layer_flux[i] *= factor;

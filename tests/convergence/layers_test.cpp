@@ -69,8 +69,8 @@ TEST_F(Layers, OfAPlaneUnderAPointLightIsDirectAlone) {
 // rho).
 TEST_F(Layers, OfAFurnace) {
     constexpr double rho[] = {0.3, 0.5, 0.7}, emitted[] = {0.35, 0.3, 0.3};
-    Rig rig(project_scene("furnace"), settings_of({32, 32}));
-    rig.integrator.run(64);
+    Rig rig(project_scene("furnace"), settings_of({16, 16}));
+    rig.integrator.run(24);
     const Channels channels = rig.integrator.aovs();
     for (int c = 0; c < 3; ++c) {
         const std::string channel = std::string(".") + "RGB"[c];
@@ -90,7 +90,7 @@ TEST_F(Layers, AreTheSameWhoeverBringsDirectLight) {
     scene.materials[1].roughness = 0.3f;
     scene.materials[3].metallic = 1.0f;
     scene.materials[3].roughness = 0.2f;
-    constexpr int renders = 8;
+    constexpr int renders = 6;
     std::map<std::string, std::vector<double>> means[2];
     for (int way = 0; way < 2; ++way) {
         for (int r = 0; r < renders; ++r) {
@@ -98,7 +98,7 @@ TEST_F(Layers, AreTheSameWhoeverBringsDirectLight) {
             settings.direct = way == 0 ? direct_sampled : direct_gathered;
             settings.seed = std::uint32_t(1 + renders * way + r);
             Rig rig(scene, settings, plain_device());
-            rig.integrator.run(16);
+            rig.integrator.run(12);
             const Channels channels = rig.integrator.aovs();
             for (const std::string& layer : layers) means[way][layer].push_back(mean_of(channels, layer + ".G"));
         }
@@ -113,7 +113,7 @@ TEST_F(Layers, AreTheSameWhoeverBringsDirectLight) {
         // What remains of the kernels' bias after so few iterations: light leaks about edges into other pixels alone.
         const double allowed = 5.0 * std::sqrt(variance) + 0.005 * mean[0];
         EXPECT_NEAR(mean[0], mean[1], allowed) << layer;
-        EXPECT_GT(mean[0], 0.01) << layer << ": nothing to compare";
+        EXPECT_GT(mean[0], 0.001) << layer << ": nothing to compare";
     }
 }
 
