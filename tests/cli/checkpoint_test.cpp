@@ -296,7 +296,7 @@ TEST_F(Checkpoint, HashesAreTheSameForAllThreadsAndWidths) {
         expect_done(result);
         const std::vector<std::string> lines = lines_of(result.out);
         ASSERT_EQ(lines.size(), 19u) << result.out;
-        EXPECT_TRUE(lines[0].starts_with("1 eye ") && lines[17].starts_with("3 update ")) << result.out;
+        EXPECT_TRUE(lines[0].starts_with("1 photon ") && lines[17].starts_with("3 update ")) << result.out;
         if (expected.empty()) expected = result.out;
         EXPECT_EQ(result.out, expected) << "under " << environment.back();
     }

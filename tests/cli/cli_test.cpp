@@ -137,6 +137,28 @@ TEST_F(Cli, InfoTellsHowMaterialsAreTreated) {
     }
 }
 
+TEST_F(Cli, InfoTellsWhatARenderTakes) {
+    // Three bands: a pixel of a band is there for a third of the picture.
+    const auto result = run(
+        {"info", scene("cornell"), "--memory", "--size", "2048x1200", "--photons", "10000", "--knn", "20", "--json"});
+    expect_done(result);
+    const Json memory = Json::parse(result.out).at("memory");
+    std::map<std::string, Json> of;
+    std::uint64_t sum = 0;
+    for (const Json& row : memory.at("of")) {
+        of[row.at("of")] = row;
+        sum += row.at("bytes").get<std::uint64_t>();
+    }
+    EXPECT_EQ(memory.at("bytes"), sum);
+    EXPECT_EQ(of.at("pixel").at("count"), 2048 * 1200);
+    EXPECT_EQ(of.at("pixel of a band").at("count"), 2048 * 400);
+    EXPECT_LT(sum, memory.at("device_memory_bytes").get<std::uint64_t>());
+    const auto plain = run({"info", scene("cornell"), "--memory", "--size", "2048x1200"});
+    expect_done(plain);
+    EXPECT_TRUE(contains(plain.out, "a render of 2048x1200 takes ")) << plain.out;
+    EXPECT_TRUE(contains(plain.out, "  pixel: 2457600 times 120.0 bytes, 294.9 MB")) << plain.out;
+}
+
 // ---- Comparing
 
 TEST_F(Cli, InfoTellsOfTheEnvironment) {

@@ -169,6 +169,11 @@ TEST(Options, TheFirstWordChoosesTheCommand) {
     EXPECT_EQ(info.scene.environment, "b.exr");
     EXPECT_EQ(info.scene.thin_glass, ThinGlass::solid);
     EXPECT_TRUE(info.json);
+    EXPECT_FALSE(info.memory);
+    const auto memory = std::get<InfoOptions>(parse({"info", "a.glb", "--memory", "--size", "30x20", "--aovs"}));
+    EXPECT_TRUE(memory.memory);
+    EXPECT_EQ(memory.settings.size->pixels(), 600u);
+    EXPECT_TRUE(memory.settings.aovs);
     EXPECT_FALSE(std::get<DevicesOptions>(parse({"devices"})).json);
     EXPECT_EQ(std::get<RenderOptions>(parse({"./compare"})).scene.file, "./compare");
     EXPECT_EQ(std::get<RenderOptions>(parse({"--quiet", "info"})).scene.file, "info");
