@@ -172,7 +172,7 @@ TEST_F(PassHashes, DoNotDependOnHowTheWorkIsCut) {
     ASSERT_EQ(expected.size(), 30u);
     EXPECT_EQ(expected[6].pass + expected[7].pass + expected[8].pass + expected[9].pass + expected[10].pass +
                   expected[11].pass,
-              "eyephotongridknngatherupdate");
+              "photongrideyeknngatherupdate");
 
     Rig cut(room(), settings_of("cppm"), plain_device());
     gpu::Params params = cut.integrator.params();
