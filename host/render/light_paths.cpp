@@ -12,7 +12,7 @@ constexpr std::uint32_t counted_paths = 16384;
 constexpr std::uint32_t counted_seed = 1;
 constexpr double factor = 200.0;          // A
 constexpr double rays_a_pixel = 5.0;      // at most
-constexpr double fewest = 10, most = 20;  // logarithms to base 2
+constexpr double fewest = 10, most = 19;  // logarithms to base 2
 
 }  // namespace
 
