@@ -125,8 +125,8 @@ void check_memory(const Counts& counts, const Settings& settings, const Device& 
         if (row.per != Per::photon_slot || bytes <= most) continue;
         throw Error(ExitCode::out_of_device_memory,
                     fmt::format("{} light paths need a buffer of {}, the device '{}' allows {}: --photons {} would fit",
-                                settings.photons, megabytes(bytes), device.info().name, megabytes(most),
-                                std::uint64_t(double(settings.photons) * 0.99 * double(most) / double(bytes))));
+                                photons_of(settings), megabytes(bytes), device.info().name, megabytes(most),
+                                std::uint64_t(double(photons_of(settings)) * 0.99 * double(most) / double(bytes))));
     }
     const DeviceInfo& info = device.info();
     std::uint64_t there = info.memory_bytes - std::min(info.memory_bytes, device.allocated_bytes());
