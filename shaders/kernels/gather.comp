@@ -23,7 +23,7 @@
 #include "include/surface.glsl"
 #include "estimators/estimator.glsl"
 
-EYE_PATHS(READS)
+EYE_PATHS(UPDATES)
 SORTED_FLUX(RECORDS)
 
 // By which what arrives is divided, at least: photons at grazing angles would count for any number of others.
@@ -167,6 +167,7 @@ void main() {
         cursor = cursors[pixel];
         if (cursor.cell.x == CURSOR_DONE) return;
         sum = gathered_at(pixel);
+        if (HAS_AOVS) layer_flux = eye_paths[pixel].layer;
     }
     Receiver r = receiver_of(pixel, hit);
 
@@ -188,11 +189,15 @@ void main() {
         weigh_queue(r, queued, sum, steps);
     }
     flush(pixel);
-    if (HAS_AOVS && is_first_seen(pixel)) {
-        // As the update pass, of the photons of this round.
-        vec3 factor = hit_weight_at(pixel).weight * (params.inverse_paths / (PI * r.radius2));
-        for (uint i = 0u; i < LAYERS; ++i) layer_flux[i] *= factor;
-        add_layers(pixel, layer_flux);
+    if (HAS_AOVS) {
+        // As the update pass does with all; between rounds they wait with the eye path, which has ended.
+        if (!walked(cursor, box)) {
+            eye_paths[pixel].layer = layer_flux;
+        } else if (is_first_seen(pixel)) {
+            vec3 factor = hit_weight_at(pixel).weight * (params.inverse_paths / (PI * r.radius2));
+            for (uint i = 0u; i < LAYERS; ++i) layer_flux[i] *= factor;
+            add_layers(pixel, layer_flux);
+        }
     }
     if (walked(cursor, box)) {
         cursor.cell.x = CURSOR_DONE;
