@@ -4,13 +4,11 @@
 #include <cstdint>
 #include <iterator>
 #include <numbers>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <glm/common.hpp>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
@@ -22,27 +20,12 @@
 #include "flat/flatten.h"
 #include "flat/surface.h"
 #include "render/memory.h"
+#include "scene/instances.h"
 
 namespace vkcppm {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-struct Bounds {
-    glm::dvec3 low;
-    glm::dvec3 high;
-};
-
-std::optional<Bounds> bounds_of(const Scene& scene) {
-    std::optional<Bounds> bounds;
-    for (const Triangle& triangle : scene.triangles) {
-        for (const std::uint32_t vertex : triangle.vertex) {
-            const glm::dvec3& p = scene.positions[vertex];
-            bounds = bounds ? Bounds{glm::min(bounds->low, p), glm::max(bounds->high, p)} : Bounds{p, p};
-        }
-    }
-    return bounds;
-}
 
 std::vector<std::size_t> triangles_by_material(const Scene& scene) {
     std::vector<std::size_t> counts(scene.materials.size());
@@ -177,8 +160,10 @@ Json json_of(const Scene& scene, const std::vector<Feature>& features) {
     json["vertices"] = scene.positions.size();
     json["triangles"] = scene.triangles.size();
     json["vertex_attributes"] = vertex_attributes(scene);
-    const std::optional<Bounds> bounds = bounds_of(scene);
-    json["bounds"] = bounds ? Json{{"min", json_of(bounds->low)}, {"max", json_of(bounds->high)}} : Json();
+    json["instances"] = scene.instances.size();
+    json["shown_triangles"] = shown_triangles(scene);
+    const SceneBox box = world_box(scene);
+    json["bounds"] = box.is_empty() ? Json() : Json{{"min", json_of(box.low)}, {"max", json_of(box.high)}};
     json["materials"] = Json::array();
     const std::vector<std::size_t> triangles = triangles_by_material(scene);
     const std::vector<SurfaceTraits> traits = traits_of(scene);
@@ -215,8 +200,12 @@ std::string plain_text(const Scene& scene, const std::vector<Feature>& features)
     std::string text = fmt::format("{}: {} triangles, {} vertices, hash {}\n", scene.file.string(),
                                    scene.triangles.size(), scene.positions.size(), hash_text(scene.hash));
     const auto out = std::back_inserter(text);
-    if (const std::optional<Bounds> bounds = bounds_of(scene)) {
-        fmt::format_to(out, "bounds {} to {} m\n", text_of(bounds->low), text_of(bounds->high));
+    if (!scene.instances.empty()) {
+        fmt::format_to(out, "{} instances of {} meshes: {} triangles are shown\n", scene.instances.size(),
+                       scene.meshes.size(), shown_triangles(scene));
+    }
+    if (const SceneBox box = world_box(scene); !box.is_empty()) {
+        fmt::format_to(out, "bounds {} to {} m\n", text_of(box.low), text_of(box.high));
     }
     fmt::format_to(out, "vertices with {}\n", fmt::join(vertex_attributes(scene), ", "));
     fmt::format_to(out, "{} materials\n", scene.materials.size());

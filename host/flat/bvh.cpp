@@ -24,8 +24,6 @@ constexpr float node_cost = 5.0f;          // of visiting a four-wide node
 constexpr float leaf_cost = 2.0f;          // of beginning a leaf
 constexpr int max_sah_depth = 48;          // deeper, halves by count bound the depth
 constexpr std::uint32_t task_size = 4096;  // triangles of a subtree that is worth a task of its own
-// Boxes grow by the rounding error of the slab test: a few ulp of coordinates within [-1, 1].
-constexpr float padding = 1e-6f;
 
 // x, y, z and 0 in one SIMD register, of g++ and clang alike.
 using Float4 = float __attribute__((vector_size(16)));
@@ -58,17 +56,20 @@ struct Bounds {
     }
 };
 
-/// A triangle as the builder moves it about: the box and the index of the triangle, close together, for there may be
+/// A triangle or an instance as the builder moves it about: the box and the index, close together, for there may be
 /// very many.
 struct Primitive {
     std::array<float, 3> low;
     std::array<float, 3> high;
-    std::uint32_t index;
+    std::uint32_t index;  // instances come after the triangles
 
     static Primitive of(const std::array<glm::vec3, 3>& triangle, std::uint32_t index) {
-        const glm::vec3 low = glm::min(triangle[0], glm::min(triangle[1], triangle[2]));
-        const glm::vec3 high = glm::max(triangle[0], glm::max(triangle[1], triangle[2]));
-        return {{low.x, low.y, low.z}, {high.x, high.y, high.z}, index};
+        return of(BvhBox{glm::min(triangle[0], glm::min(triangle[1], triangle[2])),
+                         glm::max(triangle[0], glm::max(triangle[1], triangle[2]))},
+                  index);
+    }
+    static Primitive of(const BvhBox& box, std::uint32_t index) {
+        return {{box.low.x, box.low.y, box.low.z}, {box.high.x, box.high.y, box.high.z}, index};
     }
     Bounds bounds() const { return {xyz(offsetof(Primitive, low)), xyz(offsetof(Primitive, high))}; }
     Float4 centre() const { return all(0.5f) * (xyz(offsetof(Primitive, low)) + xyz(offsetof(Primitive, high))); }
@@ -83,43 +84,54 @@ private:
 };
 static_assert(sizeof(Primitive) == 28);
 
-/// An inner node of the binary tree, whose leaves hold one triangle each. The surface area heuristic tells how it is
-/// best cut into four-wide nodes and leaves (Ylitie, Karras and Laine 2017, section 3). Triangles of a subtree stand
+/// An inner node of the binary tree, whose leaves hold one primitive each. The surface area heuristic tells how it is
+/// best cut into four-wide nodes and leaves (Ylitie, Karras and Laine 2017, section 3). Primitives of a subtree stand
 /// side by side, so that the node is known by the place where its right half begins, and its children by theirs.
 struct BinaryNode {
     std::array<float, 3> low;
     std::array<float, 3> high;
     /// Least cost of the subtree, in areas times triangle tests, as at most i + 1 children of a four-wide node.
     std::array<float, width - 1> cost;
-    std::uint32_t left : 31;  // of its left child, where that is no leaf
-    std::uint32_t leaf : 1;   // as one child it is best a leaf
-    std::uint32_t right;      // of its right child
+    std::uint32_t left : 31;      // of its left child, where that is no leaf
+    std::uint32_t leaf : 1;       // as one child it is best a leaf
+    std::uint32_t right : 31;     // of its right child
+    std::uint32_t instances : 1;  // there are some below it
 };
+static_assert(sizeof(BinaryNode) == 44);
 
-/// The binary tree: the triangles in the order of its leaves, and the nodes by the place where their right half begins.
+/// The binary tree: the primitives in the order of its leaves, the nodes by the place where their right half begins.
 struct BinaryTree {
-    std::unique_ptr<Primitive[]> triangles;
+    std::unique_ptr<Primitive[]> primitives;
     std::unique_ptr<BinaryNode[]> nodes;
+    std::uint32_t triangles = 0;  // how many
     std::uint32_t root = 0;
 };
 
-/// A subtree of it, with what follows from its triangles or is kept by its node.
+/// A subtree of it, with what follows from its primitives or is kept by its node.
 struct Subtree {
-    std::uint32_t first;  // triangle
+    std::uint32_t first;  // primitive
     std::uint32_t count;
     std::uint32_t node;  // where there are several
 
     Bounds bounds(const BinaryTree& tree) const {
-        if (count == 1) return tree.triangles[first].bounds();
+        if (count == 1) return tree.primitives[first].bounds();
         const BinaryNode& n = tree.nodes[node];
         return {Float4{n.low[0], n.low[1], n.low[2], 0.0f}, Float4{n.high[0], n.high[1], n.high[2], 0.0f}};
     }
     std::array<float, width - 1> cost(const BinaryTree& tree) const {
         if (count > 1) return tree.nodes[node].cost;
-        const float cost = tree.triangles[first].bounds().half_area() * (leaf_cost + 1.0f);
+        const float cost = tree.primitives[first].bounds().half_area() * (leaf_cost + 1.0f);
         return {cost, cost, cost};
     }
     bool leaf(const BinaryTree& tree) const { return count == 1 || tree.nodes[node].leaf != 0; }
+    bool is_instance(const BinaryTree& tree) const {
+        return count == 1 && tree.primitives[first].index >= tree.triangles;
+    }
+    bool has_instances(const BinaryTree& tree) const {
+        return count == 1 ? is_instance(tree) : tree.nodes[node].instances != 0;
+    }
+    /// As a child of a four-wide node it is a node: one stands also in the place of an instance.
+    bool is_inner(const BinaryTree& tree) const { return !leaf(tree) || is_instance(tree); }
     Subtree left(const BinaryTree& tree) const { return {first, node - first, tree.nodes[node].left}; }
     Subtree right(const BinaryTree& tree) const { return {node, first + count - node, tree.nodes[node].right}; }
 };
@@ -251,13 +263,18 @@ private:
 /// of the plane as before: the smaller side waits in a second buffer while the other closes ranks.
 class Builder {
 public:
-    explicit Builder(std::span<const std::array<glm::vec3, 3>> triangles)
-        : waiting_(std::make_unique_for_overwrite<Primitive[]>(triangles.size() / 2 + 1)) {
-        tree_.triangles = std::make_unique_for_overwrite<Primitive[]>(triangles.size());
-        tree_.nodes = std::make_unique_for_overwrite<BinaryNode[]>(triangles.size());
-        Range all(0, std::uint32_t(triangles.size()));
-        tbb::parallel_for(std::uint32_t(0), all.last,
-                          [&](std::uint32_t i) { tree_.triangles[i] = Primitive::of(triangles[i], i); });
+    Builder(std::span<const std::array<glm::vec3, 3>> triangles, std::span<const BvhBox> instances) {
+        const auto first_instance = std::uint32_t(triangles.size());
+        Range all(0, first_instance + std::uint32_t(instances.size()));
+        tree_.primitives = std::make_unique_for_overwrite<Primitive[]>(all.count());
+        tree_.nodes = std::make_unique_for_overwrite<BinaryNode[]>(all.count());
+        tree_.triangles = first_instance;
+        waiting_ = std::make_unique_for_overwrite<Primitive[]>(all.count() / 2 + 1);
+        tbb::parallel_for(0u, first_instance,
+                          [&](std::uint32_t i) { tree_.primitives[i] = Primitive::of(triangles[i], i); });
+        for (std::uint32_t i = first_instance; i < all.last; ++i) {
+            tree_.primitives[i] = Primitive::of(instances[i - first_instance], i);
+        }
         for (const Primitive& primitive : primitives(all)) all.centres.grow(primitive.centre());
         tree_.root = build(all, 0);
     }
@@ -275,7 +292,7 @@ private:
         std::uint32_t count() const { return last - first; }
     };
 
-    std::span<Primitive> primitives(const Range& range) { return {&tree_.triangles[range.first], range.count()}; }
+    std::span<Primitive> primitives(const Range& range) { return {&tree_.primitives[range.first], range.count()}; }
 
     /// Room for half of the triangles of a node, which no other node has that does not share some with it.
     Primitive* waiting(const Range& range) { return &waiting_[(range.first + 1) / 2]; }
@@ -302,13 +319,15 @@ private:
             left();
             right();
         }
-        node.right = right_node;
+        node.right = right_node & 0x7fffffffu;
         const Subtree self{range.first, range.count(), halves[1].first};
-        const auto a = self.left(tree_).cost(tree_), b = self.right(tree_).cost(tree_);
+        const Subtree left_half = self.left(tree_), right_half = self.right(tree_);
+        const auto a = left_half.cost(tree_), b = right_half.cost(tree_);
         const float area = whole.half_area();
         const float as_node = area * node_cost + Share(a, b, width).cost;
         const float as_leaf = area * (leaf_cost + float(range.count()));
-        node.leaf = range.count() <= BVH_MAX_LEAF && as_leaf <= as_node;
+        node.instances = left_half.has_instances(tree_) || right_half.has_instances(tree_);
+        node.leaf = !node.instances && range.count() <= BVH_MAX_LEAF && as_leaf <= as_node;
         node.cost[0] = node.leaf ? as_leaf : as_node;
         for (std::uint32_t slots = 2; slots < width; ++slots) {
             node.cost[slots - 1] = std::min(node.cost[slots - 2], Share(a, b, slots).cost);
@@ -389,18 +408,26 @@ std::uint32_t quantise_up(float value, float origin, float cell) {
 /// come in the order of their nodes.
 class Collapser {
 public:
-    Collapser(const BinaryTree& tree, std::uint32_t triangles) : nodes(1), tree_(tree) {
-        order.reserve(triangles);
-        stack = emit({0, triangles, tree.root}, 0);
+    Collapser(const BinaryTree& tree, std::uint32_t instances, float padding)
+        : nodes(1), instance_nodes(instances), tree_(tree), padding_(padding) {
+        order.reserve(tree.triangles);
+        stack = emit({0, tree.triangles + instances, tree.root}, 0);
     }
 
     std::vector<gpu::BvhNode> nodes;
     std::vector<std::uint32_t> order;
     std::uint32_t stack;  // nodes of which children can wait
+    std::vector<std::uint32_t> instance_nodes;
 
 private:
     /// Fills in node `index` from the binary node and adds all below; returns the nodes of which children can wait.
     std::uint32_t emit(const Subtree& root, std::uint32_t index) {
+        if (root.is_instance(tree_) && index > 0) {
+            const std::uint32_t instance = tree_.primitives[root.first].index - tree_.triangles;
+            nodes[index].exponents = BVH_INSTANCE | instance;
+            instance_nodes[instance] = index;
+            return 0;
+        }
         Children children;
         if (root.leaf(tree_)) {
             children.add(root);
@@ -408,7 +435,7 @@ private:
             cut_halves(root, width, children);
         }
         const auto list = children.list();
-        const auto leaves = std::ranges::stable_partition(list, [&](const Subtree& c) { return !c.leaf(tree_); });
+        const auto leaves = std::ranges::stable_partition(list, [&](const Subtree& c) { return c.is_inner(tree_); });
         const std::size_t inner = list.size() - leaves.size();
         const auto first = inner > 0 ? std::uint32_t(nodes.size()) : index;
         nodes.resize(nodes.size() + inner);
@@ -420,7 +447,7 @@ private:
         for (std::size_t c = inner; c < list.size(); ++c) {
             const Subtree& leaf = list[c];
             words[1] |= ((std::uint32_t(order.size()) - words[0]) | leaf.count << 4) << (8 * c);
-            for (std::uint32_t i = 0; i < leaf.count; ++i) order.push_back(tree_.triangles[leaf.first + i].index);
+            for (std::uint32_t i = 0; i < leaf.count; ++i) order.push_back(tree_.primitives[leaf.first + i].index);
         }
         std::uint32_t need = 0;
         for (std::uint32_t c = 0; c < inner; ++c) need = std::max(need, emit(list[c], first + c));
@@ -457,8 +484,8 @@ private:
         gpu::BvhNode& node = nodes[index];
         Bounds whole = Bounds::nothing();
         for (const Subtree& c : children) whole.grow(c.bounds(tree_));
-        node.origin = glm::vec3(whole.low[0], whole.low[1], whole.low[2]) - padding;
-        const glm::vec3 high = glm::vec3(whole.high[0], whole.high[1], whole.high[2]) + padding;
+        node.origin = glm::vec3(whole.low[0], whole.low[1], whole.low[2]) - padding_;
+        const glm::vec3 high = glm::vec3(whole.high[0], whole.high[1], whole.high[2]) + padding_;
         std::array<std::uint32_t*, 3> low_words = {&node.low_x, &node.low_y, &node.low_z};
         std::array<std::uint32_t*, 3> high_words = {&node.high_x, &node.high_y, &node.high_z};
         for (int axis = 0; axis < 3; ++axis) {
@@ -468,27 +495,40 @@ private:
             node.exponents |= std::uint32_t(exponent + 127) << (8 * axis);
             for (std::size_t c = 0; c < children.size(); ++c) {
                 const Bounds bounds = children[c].bounds(tree_);
-                *low_words[axis] |= quantise_down(bounds.low[axis] - padding, node.origin[axis], cell) << (8 * c);
-                *high_words[axis] |= quantise_up(bounds.high[axis] + padding, node.origin[axis], cell) << (8 * c);
+                *low_words[axis] |= quantise_down(bounds.low[axis] - padding_, node.origin[axis], cell) << (8 * c);
+                *high_words[axis] |= quantise_up(bounds.high[axis] + padding_, node.origin[axis], cell) << (8 * c);
             }
         }
     }
 
     const BinaryTree& tree_;
+    const float padding_;
 };
 
 }  // namespace
 
-Bvh build_bvh(std::span<const std::array<glm::vec3, 3>> triangles) {
-    assert(triangles.size() < (std::size_t(1) << 28));
+Bvh build_bvh(std::span<const std::array<glm::vec3, 3>> triangles, std::span<const BvhBox> instances, float padding) {
+    assert(triangles.size() + instances.size() < (std::size_t(1) << 28));
     Bvh bvh;
-    if (triangles.empty()) {
+    if (triangles.empty() && instances.empty()) {
         bvh.nodes.emplace_back();
         return bvh;
     }
-    const BinaryTree tree = Builder(triangles).take_tree();
-    Collapser collapser(tree, std::uint32_t(triangles.size()));
-    return {std::move(collapser.nodes), std::move(collapser.order), std::max(1u, collapser.stack)};
+    const BinaryTree tree = Builder(triangles, instances).take_tree();
+    Collapser collapser(tree, std::uint32_t(instances.size()), padding);
+    return {std::move(collapser.nodes), std::move(collapser.order), std::max(1u, collapser.stack),
+            std::move(collapser.instance_nodes)};
+}
+
+std::uint32_t append_tree(Bvh& bvh, const Bvh& mesh, std::uint32_t first_triangle) {
+    const auto root = std::uint32_t(bvh.nodes.size());
+    for (gpu::BvhNode node : mesh.nodes) {
+        node.children += root << BVH_CHILDREN_SHIFT;
+        node.leaves[0] += first_triangle;
+        node.parent_leaves[0] += first_triangle;
+        bvh.nodes.push_back(node);
+    }
+    return root;
 }
 
 BvhChild child_of(const Bvh& bvh, std::uint32_t index, int c) {

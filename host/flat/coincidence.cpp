@@ -218,10 +218,11 @@ std::vector<Touching> touching_faces(std::span<const Corners> corners, std::span
 
 }  // namespace
 
-void part_touching_faces(std::span<Corners> corners, std::span<const FaceTraits> faces) {
+void part_touching_faces(std::span<Corners> corners, std::span<const FaceTraits> faces, float least_error) {
+    const auto error = [&](std::uint32_t i) { return std::max(least_error, position_error(corners[i])); };
     std::unordered_map<std::uint32_t, float> shifts;  // towards the front
     const auto move = [&](std::uint32_t i, std::uint32_t other, float side) {
-        const float gap = 2.0f * (position_error(corners[i]) + position_error(corners[other]));
+        const float gap = 2.0f * (error(i) + error(other));
         float& shift = shifts[i];
         if (gap > std::abs(shift)) shift = side * gap;
     };

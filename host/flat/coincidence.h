@@ -31,7 +31,8 @@ std::vector<std::uint32_t> distinct_triangles(std::span<const Corners> corners, 
 /// Moves apart what touches, by four times the rounding error: a face of solid glass that lies front to front on
 /// another face, wholly or in part, goes into its solid, so that there is a thin gap of air as between any two bodies;
 /// a lamp in the plane of what it lies on goes to its front, and so do the two sides of an opaque sheet, triangles with
-/// the same corners that differ. O(n log n) where few lie on many.
-void part_touching_faces(std::span<Corners> corners, std::span<const FaceTraits> faces);
+/// the same corners that differ. least_error: of a point on any of them, where the corners are a mesh's whose instances
+/// are known less precisely than it is. O(n log n) where few lie on many.
+void part_touching_faces(std::span<Corners> corners, std::span<const FaceTraits> faces, float least_error = 0.0f);
 
 }  // namespace vkcppm

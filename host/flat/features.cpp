@@ -64,6 +64,11 @@ template <> std::string reason_of<FEATURE_VERTEX_COLORS>(const Asked& asked) {
     return asked.scene.colors.empty() ? "" : "vertices that have some";
 }
 
+template <> std::string reason_of<FEATURE_INSTANCES>(const Asked& asked) {
+    if (asked.flat.instances.empty()) return {};
+    return fmt::format("{} of {} meshes", asked.flat.instances.size(), asked.scene.meshes.size());
+}
+
 template <> std::string reason_of<FEATURE_TEXTURED_LIGHTS>(const Asked& asked) {
     const auto textured = std::count_if(asked.flat.lights.begin(), asked.flat.lights.end(),
                                         [](const gpu::Light& l) { return l.textured != 0; });

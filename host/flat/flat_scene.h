@@ -19,9 +19,12 @@ namespace vkcppm {
 /// Of all that is listed by triangle and by texel, what is on the device need not be here any more.
 struct FlatScene {
     SceneFrame frame;
-    Bvh bvh;
-    std::vector<gpu::TriangleGeometry> triangles;  // in leaf order, as all that is listed by triangle
-    std::vector<std::uint8_t> first_corner;        // of the scene's triangle that kernels see first
+    Bvh bvh;  // the scene's tree, then those of the shared meshes
+    // In leaf order, as all that is listed by triangle: those of the scene's frame, then those of each shared mesh in
+    // the mesh's own space.
+    std::vector<gpu::TriangleGeometry> triangles;
+    std::vector<std::uint8_t> first_corner;  // of the scene's triangle that kernels see first
+    std::vector<gpu::Instance> instances;
     std::vector<gpu::TriangleShading> shading;
     std::vector<glm::vec4> texcoords;       // [3 x triangles] both sets of a corner, where there are textures
     std::vector<glm::uvec4> vertex_colors;  // [2 x triangles] 4 half floats a corner, then 2 unused words
@@ -39,9 +42,9 @@ struct FlatScene {
     std::vector<glm::vec4> environment;  // [pixels] radiance, keep of its alias table
     std::vector<glm::uvec2> environment_alias;  // [pixels] its other entry; environment_area, as bits
     std::vector<Feature> features;              // what the scene asks of the kernels
-    double area = 0.0;                          // of all triangles, frame units squared
+    double area = 0.0;                          // of all triangles, in each instance, frame units squared
     double radius = 0.0;                        // of the bounding sphere about the origin, frame units
-    glm::vec3 low{0.0f};                        // bounds of the triangles, padded
+    glm::vec3 low{0.0f};                        // bounds of the triangles and the instances, padded
     glm::vec3 high{0.0f};
 };
 

@@ -1,10 +1,11 @@
 #include "flat/flatten.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <tuple>
-#include <utility>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -20,6 +21,7 @@
 #include "flat/lights.h"
 #include "flat/surface.h"
 #include "flat/textures.h"
+#include "scene/instances.h"
 
 namespace vkcppm {
 namespace {
@@ -38,32 +40,16 @@ std::uint32_t pack_direction(const glm::vec3& n) {
     return snorm(p.x) | snorm(p.y) << 16;
 }
 
-SceneFrame make_frame(const Scene& scene) {
-    glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
-    using Box = std::pair<glm::dvec3, glm::dvec3>;
-    const auto joined = [](const Box& a, const Box& b) {
-        return Box(glm::min(a.first, b.first), glm::max(a.second, b.second));
-    };
-    std::tie(low, high) = tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, scene.triangles.size()), Box(low, high),
-        [&](const tbb::blocked_range<std::size_t>& range, Box box) {
-            for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                for (const std::uint32_t v : scene.triangles[i].vertex) {
-                    box = joined(box, {scene.positions[v], scene.positions[v]});
-                }
-            }
-            return box;
-        },
-        joined);
+SceneFrame make_frame(const SceneBox& box) {
     SceneFrame frame;
-    if (scene.triangles.empty()) return frame;
-    frame.centre = 0.5 * (low + high);
-    const double radius = 0.5 * glm::length(high - low);
+    if (box.is_empty()) return frame;
+    frame.centre = 0.5 * (box.low + box.high);
+    const double radius = 0.5 * glm::length(box.high - box.low);
     if (radius > 0.0) frame.scale = std::exp2(-std::ceil(std::log2(radius)));
     return frame;
 }
 
-/// The triangles of the scene that kernels see, and their corners there.
+/// Triangles of one space that kernels see, and their corners there.
 struct Placed {
     std::vector<std::uint32_t> source;  // into the triangles of the scene
     std::vector<Corners> corners;
@@ -80,13 +66,15 @@ int first_corner(const Corners& c) {
     return int(std::max_element(opposite.begin(), opposite.end()) - opposite.begin());
 }
 
-Placed place_triangles(const Scene& scene, const SceneFrame& frame, const std::vector<SurfaceTraits>& traits) {
+/// least_error: as of part_touching_faces().
+Placed place_triangles(const Scene& scene, const TriangleRange& range, const SceneFrame& frame,
+                       const std::vector<SurfaceTraits>& traits, float least_error = 0.0f) {
     Placed placed;
     std::vector<Corners>& corners = placed.corners;
-    corners.resize(scene.triangles.size());
+    corners.resize(range.count());
     std::vector<FaceTraits> faces(corners.size());
     tbb::parallel_for(std::size_t(0), corners.size(), [&](std::size_t i) {
-        const Triangle& triangle = scene.triangles[i];
+        const Triangle& triangle = scene.triangles[range.first + i];
         for (int c = 0; c < 3; ++c) corners[i][c] = glm::vec3(frame.point(scene.positions[triangle.vertex[c]]));
         const SurfaceTraits& t = traits[triangle.material];
         faces[i] = {triangle.material, t.emits, t.has(Lobe::transmission) && !t.thin};
@@ -99,7 +87,8 @@ Placed place_triangles(const Scene& scene, const SceneFrame& frame, const std::v
     }
     corners.resize(kept);
     faces.resize(kept);
-    part_touching_faces(corners, faces);
+    part_touching_faces(corners, faces, least_error);
+    for (std::uint32_t& source : placed.source) source += range.first;
     return placed;
 }
 
@@ -134,51 +123,229 @@ gpu::TriangleShading shading_of(const Scene& scene, const Triangle& triangle, co
     return shading;
 }
 
-/// What is told of all triangles, of one or of several.
+/// What holds points.
 struct Extents {
     glm::vec3 low{std::numeric_limits<float>::infinity()};
     glm::vec3 high{-std::numeric_limits<float>::infinity()};
     double radius = 0.0;
+
+    void hold(const glm::vec3& p) { hold(Extents{p, p, double(glm::length(p))}); }
+    void hold(const Extents& other) {
+        low = glm::min(low, other.low);
+        high = glm::max(high, other.high);
+        radius = std::max(radius, other.radius);
+    }
 };
 
-void add_triangles(const Scene& scene, const std::vector<SurfaceTraits>& traits, FlatScene& flat) {
-    Placed placed = place_triangles(scene, flat.frame, traits);
-    flat.bvh = build_bvh(placed.corners);
-    const std::size_t count = flat.bvh.order.size();
-    flat.triangles.resize(count);
-    flat.shading.resize(count);
-    flat.first_corner.resize(count);
+/// Adds triangles in the leaf order of their tree, with which flat.bvh.order ends; their places in the scene are put
+/// there.
+Extents add_placed(const Scene& scene, const Placed& placed, FlatScene& flat) {
+    const std::size_t first = flat.triangles.size(), last = flat.bvh.order.size();
+    flat.triangles.resize(last);
+    flat.shading.resize(last);
+    flat.first_corner.resize(last);
     const auto add = [&](std::size_t i) {
         std::uint32_t& source = flat.bvh.order[i];
         Corners corners = placed.corners[source];
-        const int first = first_corner(corners);
-        std::rotate(corners.begin(), corners.begin() + first, corners.end());
+        const int first_seen = first_corner(corners);
+        std::rotate(corners.begin(), corners.begin() + first_seen, corners.end());
         source = placed.source[source];
-        flat.first_corner[i] = std::uint8_t(first);
+        flat.first_corner[i] = std::uint8_t(first_seen);
         flat.triangles[i] = geometry_of(corners);
         flat.shading[i] = shading_of(scene, source_of(scene, flat, i), face_normal(flat.triangles[i]));
         return corners;
     };
-    const auto joined = [](Extents a, const Extents& b) {
-        a.low = glm::min(a.low, b.low);
-        a.high = glm::max(a.high, b.high);
-        a.radius = std::max(a.radius, b.radius);
-        return a;
-    };
-    const Extents extents = tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, count), Extents(),
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(first, last), Extents(),
         [&](const tbb::blocked_range<std::size_t>& range, Extents some) {
             for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                for (const glm::vec3& p : add(i)) some = joined(some, {p, p, double(glm::length(p))});
+                for (const glm::vec3& p : add(i)) some.hold(p);
             }
             return some;
         },
-        joined);
-    // In order: the sum does not hang on the threads.
-    for (const gpu::TriangleGeometry& triangle : flat.triangles) flat.area += 0.5 * glm::length(face_normal(triangle));
+        [](Extents a, const Extents& b) {
+            a.hold(b);
+            return a;
+        });
+}
+
+/// In order: the sum does not hang on the threads.
+double area_of(std::span<const gpu::TriangleGeometry> triangles) {
+    double area = 0.0;
+    for (const gpu::TriangleGeometry& triangle : triangles) area += 0.5 * glm::length(face_normal(triangle));
+    return area;
+}
+
+// ---- instances ----
+
+/// The largest sum of a row's absolute values.
+double norm(const glm::dmat3& m) {
+    const glm::dmat3 rows = glm::transpose(m);
+    double largest = 0.0;
+    for (int i = 0; i < 3; ++i) largest = std::max(largest, glm::dot(glm::abs(rows[i]), glm::dvec3(1.0)));
+    return largest;
+}
+
+glm::dmat3 absolute(const glm::dmat3& m) { return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])}; }
+
+constexpr double half_ulp = 0x1p-24;  // of 1, in floats
+
+/// From a mesh's space to the scene's frame, and back. The frame's origin is where a ray's distances are exact.
+struct MeshToScene {
+    glm::mat3 linear;
+    glm::vec3 centre;
+    glm::dmat3 back;  // of `linear` as floats have it
+
+    MeshToScene(const Instance& instance, const SceneFrame& mesh, const SceneFrame& scene)
+        : linear(glm::dmat3(instance.to_world) * (scene.scale / mesh.scale)),
+          centre(scene.point(instance.to_world * glm::dvec4(mesh.centre, 1.0))),
+          back(glm::inverse(glm::dmat3(linear))) {}
+
+    /// What an error of a point in the scene's frame can be in the mesh's space, at most, times it.
+    double magnified() const { return norm(back); }
+    /// The rounding of a point of the mesh, there and back, in the scene's frame.
+    double error() const {
+        const glm::vec3 c = glm::abs(centre);
+        return 4.0 * half_ulp * double(std::max({c.x, c.y, c.z}));
+    }
+
+    gpu::Instance to_scene() const {
+        gpu::Instance record{};
+        const glm::mat3 rows = glm::transpose(linear);
+        record.row_x = glm::vec4(rows[0], centre.x);
+        record.row_y = glm::vec4(rows[1], centre.y);
+        record.row_z = glm::vec4(rows[2], centre.z);
+        record.error = float(error());
+        record.stretch = float(norm(linear) * (1.0 + norm(absolute(linear) * absolute(back))));
+        record.hand = glm::determinant(back) < 0.0 ? -1.0f : 1.0f;
+        record.size = std::max({glm::length(rows[0]), glm::length(rows[1]), glm::length(rows[2])});
+        return record;
+    }
+    void enter_by(gpu::InstanceNode& node, std::uint32_t root) const {
+        const glm::dmat3 rows = glm::transpose(back);
+        node.centre = centre;
+        for (int i = 0; i < 3; ++i) node.to_mesh[i] = glm::vec3(rows[i]);
+        node.root = root;
+    }
+    /// Of areas of a mesh that is scaled alike along its axes; else of one that faces all ways.
+    double area() const {
+        const glm::dmat3 m(linear);
+        const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+        return std::sqrt((glm::dot(cofactors[0], cofactors[0]) + glm::dot(cofactors[1], cofactors[1]) +
+                          glm::dot(cofactors[2], cofactors[2])) /
+                         3.0);
+    }
+};
+
+/// An instance so small that its way in has no floats is not there, nor is a second one in the same place.
+std::vector<std::uint32_t> distinct_instances(const Scene& scene, const std::vector<MeshToScene>& placed) {
+    const auto key = [&](std::uint32_t i) {
+        const MeshToScene& p = placed[i];
+        return std::tie(scene.instances[i].mesh, p.centre.x, p.centre.y, p.centre.z, p.linear[0].x, p.linear[0].y,
+                        p.linear[0].z, p.linear[1].x, p.linear[1].y, p.linear[1].z, p.linear[2].x, p.linear[2].y,
+                        p.linear[2].z);
+    };
+    std::vector<std::uint32_t> kept;
+    for (std::uint32_t i = 0; i < placed.size(); ++i) {
+        constexpr double most = 1e15;
+        if (placed[i].magnified() < most) kept.push_back(i);
+    }
+    std::vector<std::uint32_t> sorted = kept;
+    std::ranges::sort(sorted,
+                      [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b) || (key(a) == key(b) && a < b); });
+    std::vector<bool> twice(placed.size());
+    for (std::size_t i = 1; i < sorted.size(); ++i) twice[sorted[i]] = key(sorted[i]) == key(sorted[i - 1]);
+    std::erase_if(kept, [&](std::uint32_t i) { return twice[i]; });
+    return kept;
+}
+
+/// The boxes of instances in the scene's frame.
+std::vector<BvhBox> boxes_in_frame(const std::vector<SceneBox>& boxes, const std::vector<std::uint32_t>& kept,
+                                   const SceneFrame& frame) {
+    std::vector<BvhBox> in_frame;
+    in_frame.reserve(kept.size());
+    for (const std::uint32_t i : kept) {
+        // A ray in the mesh's space is off the one in the scene by rounding.
+        const float rounding = 2.0f * bvh_padding;
+        in_frame.push_back(
+            {glm::vec3(frame.point(boxes[i].low)) - rounding, glm::vec3(frame.point(boxes[i].high)) + rounding});
+    }
+    return in_frame;
+}
+
+/// Everything that has a place: triangles, instances and the trees over them.
+void add_geometry(const Scene& scene, const std::vector<SurfaceTraits>& traits, FlatScene& flat) {
+    const TriangleRange world = world_triangles(scene);
+    const std::vector<SceneBox> boxes = instance_boxes(scene);
+    SceneBox whole = box_of(scene, world);
+    for (const SceneBox& box : boxes) whole.grow(box);
+    flat.frame = make_frame(whole);
+
+    std::vector<SceneFrame> spaces;
+    for (std::uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
+        spaces.push_back(make_frame(box_of(scene, triangles_of_mesh(scene, mesh))));
+    }
+    std::vector<MeshToScene> placements;
+    placements.reserve(scene.instances.size());
+    for (const Instance& instance : scene.instances) {
+        placements.emplace_back(instance, spaces[instance.mesh], flat.frame);
+    }
+    const std::vector<std::uint32_t> kept = distinct_instances(scene, placements);
+
+    Extents extents;
+    {
+        const std::vector<BvhBox> in_frame = boxes_in_frame(boxes, kept, flat.frame);
+        for (const BvhBox& box : in_frame) {
+            for (int corner = 0; corner < 8; ++corner) {
+                extents.hold(glm::vec3((corner & 1 ? box.high : box.low).x, (corner & 2 ? box.high : box.low).y,
+                                       (corner & 4 ? box.high : box.low).z));
+            }
+        }
+        const Placed placed = place_triangles(scene, world, flat.frame, traits);
+        flat.bvh = build_bvh(placed.corners, in_frame);
+        extents.hold(add_placed(scene, placed, flat));
+        flat.area = area_of(flat.triangles);
+    }
+    if (extents.low.x > extents.high.x) extents.hold(glm::vec3(0.0f));
+    flat.low = extents.low - float(bounds_padding);
+    flat.high = extents.high + float(bounds_padding);
     flat.radius = extents.radius;
-    flat.low = (count == 0 ? glm::vec3(0.0f) : extents.low) - float(bounds_padding);
-    flat.high = (count == 0 ? glm::vec3(0.0f) : extents.high) + float(bounds_padding);
+
+    // Per mesh: how much of the scene's rounding is seen in it, and the area that it has in all.
+    std::vector<double> least_error(scene.meshes.size()), magnified(scene.meshes.size()), areas(scene.meshes.size());
+    for (const std::uint32_t i : kept) {
+        const std::uint32_t mesh = scene.instances[i].mesh;
+        magnified[mesh] = std::max(magnified[mesh], placements[i].magnified());
+        const gpu::Instance record = placements[i].to_scene();
+        const double off = double(record.error) + double(record.stretch) * 8.0 * half_ulp;  // of a point on it
+        least_error[mesh] = std::max(least_error[mesh], placements[i].magnified() * off);
+        areas[mesh] += placements[i].area();
+    }
+    std::vector<std::uint32_t> roots;
+    std::uint32_t stack = 0;
+    for (std::uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
+        const Placed placed = place_triangles(scene, triangles_of_mesh(scene, mesh), spaces[mesh], traits,
+                                              float(std::min(1e-2, least_error[mesh])));
+        const std::size_t first = flat.triangles.size();
+        // Where rays begin that enter the mesh (enter_instance) is rounded as much.
+        const double padding = bvh_padding * (1.0 + 2e-6 * magnified[mesh]);
+        const Bvh tree = build_bvh(placed.corners, {}, float(std::min(1e-2, padding)));
+        roots.push_back(append_tree(flat.bvh, tree, std::uint32_t(first)));
+        stack = std::max(stack, tree.stack);
+        flat.bvh.order.insert(flat.bvh.order.end(), tree.order.begin(), tree.order.end());
+        add_placed(scene, placed, flat);
+        flat.area += areas[mesh] * area_of(std::span(flat.triangles).subspan(first));
+    }
+    flat.bvh.stack += stack;
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+        const MeshToScene& placement = placements[kept[k]];
+        flat.instances.push_back(placement.to_scene());
+        gpu::BvhNode& node = flat.bvh.nodes[flat.bvh.instance_nodes[k]];
+        auto entry = std::bit_cast<gpu::InstanceNode>(node);
+        placement.enter_by(entry, roots[scene.instances[kept[k]].mesh]);
+        entry.index = node.exponents;
+        node = std::bit_cast<gpu::BvhNode>(entry);
+    }
 }
 
 glm::vec4 texcoords_of(const Scene& scene, std::uint32_t vertex) {
@@ -240,15 +407,14 @@ FlatScene flatten(const Scene& scene) {
         throw Error(ExitCode::bad_scene, fmt::format("{}: {} materials, the limit is {}", scene.file.string(),
                                                      scene.materials.size(), PATH_NO_MEDIUM - 1));
     }
-    flat.frame = make_frame(scene);
     TextureTable textures(scene);
     const std::vector<SurfaceTraits> traits = traits_of(scene);
+    add_geometry(scene, traits, flat);
     for (std::size_t i = 0; i < traits.size(); ++i) {
         flat.materials.push_back(surface_of(scene.materials[i], traits[i], flat.frame.scale, textures));
     }
     flat.textures = textures.lookups();
     flat.images = textures.take_texels();
-    add_triangles(scene, traits, flat);
     add_lights(scene, flat);
     flat.features = features_of(scene, traits, flat);
     add_attributes(scene, flat);

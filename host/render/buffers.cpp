@@ -38,6 +38,7 @@ std::uint64_t things(Per per, const Counts& counts) {
         case Per::rest: return 1;
         case Per::triangle:
         case Per::node:
+        case Per::instance:
         case Per::light:
         case Per::material:
         case Per::texel:
@@ -56,6 +57,7 @@ std::uint64_t each(Entries entries, const Counts& counts) {
         case Entries::levels: return counts.levels;
         case Entries::where_aovs: return counts.aovs ? 1 : 0;
         case Entries::where_glossy: return counts.glossy ? 1 : 0;
+        case Entries::where_instances: return counts.glossy && counts.instances ? 1 : 0;
         case Entries::asked_groups: return counts.asked_groups;
         case Entries::where_traced: return counts.traced ? 1 : 0;
     }
@@ -72,6 +74,7 @@ const char* name_of(Per per) {
         case Per::counter: return "counter of the grid";
         case Per::triangle: return "triangle";
         case Per::node: return "node";
+        case Per::instance: return "instance";
         case Per::light: return "light";
         case Per::material: return "material";
         case Per::texel: return "texel";

@@ -27,6 +27,7 @@ enum class Per {
     counter,
     triangle,
     node,
+    instance,
     light,
     material,
     texel,
@@ -42,10 +43,11 @@ enum class Entries {
     moments,
     nearest,
     levels,
-    where_aovs,    // one, where the settings ask for further channels
-    where_glossy,  // one, in glossy scenes
-    asked_groups,  // of lights that eye paths ask for
-    where_traced,  // one, in the path tracer
+    where_aovs,       // one, where the settings ask for further channels
+    where_glossy,     // one, in glossy scenes
+    where_instances,  // one, in glossy scenes that have instances
+    asked_groups,     // of lights that eye paths ask for
+    where_traced,     // one, in the path tracer
 };
 
 enum class Life { scratch, carried };
@@ -88,6 +90,7 @@ struct Counts {
     std::uint64_t levels = 0;  // a photon slot
     bool aovs = false;
     bool glossy = false;
+    bool instances = false;
     bool traced = false;
 };
 

@@ -38,6 +38,7 @@ std::uint32_t features_before(const Scene& scene, const Settings& settings) {
         if (traits.glossy()) features |= FEATURE_GLOSS;
         if (traits.is_rough()) features |= FEATURE_ROUGH;
     }
+    if (!scene.instances.empty()) features |= FEATURE_INSTANCES;
     return features;
 }
 
@@ -88,6 +89,7 @@ Counts counts_of(const gpu::Params& params, const Settings& settings, const Devi
     counts.nearest = settings.knn;
     counts.aovs = settings.aovs;
     counts.glossy = (features & FEATURE_GLOSS) != 0;
+    counts.instances = (features & FEATURE_INSTANCES) != 0;
     counts.asked_groups = ASKS_FOR_LIGHTS(features) ? GROUPS_ASKED(features) : 0;
     counts.bands = bands_of(settings.size->pixels(), counts, device, most_band_pixels);
     return counts;

@@ -1,5 +1,6 @@
 #pragma once
-// A scene as a value: world-space triangles, materials, lights and cameras. No Vulkan, no file format.
+// A scene as a value: triangles in world space, meshes and where they stand, materials, lights and cameras. No Vulkan,
+// no file format.
 
 #include <array>
 #include <cstdint>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include <glm/mat2x2.hpp>
+#include <glm/mat4x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -83,6 +85,20 @@ struct MeshNode {
     std::uint32_t first_triangle = 0;  // into Scene::triangles
 };
 
+/// A mesh that is stored once, in a space of its own, and shown by instances. None of its triangles emits: lights are
+/// in world space.
+struct SharedMesh {
+    std::uint32_t first_triangle = 0;  // into Scene::triangles; they end where those of the next mesh begin
+    std::uint32_t node = 0;            // into Scene::mesh_nodes: the first that shows it
+};
+
+/// Where a shared mesh stands. Not singular, nor so sheared that rounding would count: is_shareable() of instances.h.
+struct Instance {
+    glm::dmat4x3 to_world{1.0};
+    std::uint32_t mesh = 0;  // into Scene::meshes
+    std::uint32_t node = 0;  // into Scene::mesh_nodes
+};
+
 /// KHR_lights_punctual in world space. intensity: W/sr a channel (point, spot) or W/m^2 (directional).
 struct PunctualLight {
     enum class Kind { point, spot, directional };
@@ -110,8 +126,9 @@ struct Environment {
     std::vector<glm::vec3> radiance;  // [pixels] W m^-2 sr^-1, first row on top; constant over a pixel
 };
 
-/// What a file holds, flattened to world space. `positions` and `normals` have one entry a vertex; the other vectors of
-/// vertices have one too, or are empty where no vertex of the file has any.
+/// What a file holds. Triangles and vertices are in world space, but for those of shared meshes. `positions` and
+/// `normals` have one entry a vertex; the other vectors of vertices have one too, or are empty where no vertex of the
+/// file has any.
 struct Scene {
     std::filesystem::path file;
     std::uint64_t hash = 0;             // FNV-1a of the file and of every buffer, image and environment it is lit by
@@ -119,8 +136,10 @@ struct Scene {
     std::vector<glm::vec3> normals;     // [V] unit, shading
     std::array<std::vector<glm::vec2>, 2> uv;  // [V] texture coordinates of either set
     std::vector<glm::vec4> colors;             // [V] linear, multiplies the base colour and its alpha
-    std::vector<glm::vec4> tangents;  // [V] unit, w: sign of the bitangent cross(normal, tangent); 0: none given
-    std::vector<Triangle> triangles;
+    std::vector<glm::vec4> tangents;   // [V] unit, w: sign of the bitangent cross(normal, tangent); 0: none given
+    std::vector<Triangle> triangles;   // in world space, then those of `meshes` mesh by mesh
+    std::vector<SharedMesh> meshes;    // first_triangle ascends
+    std::vector<Instance> instances;   // of those
     std::vector<MeshNode> mesh_nodes;  // first_triangle ascends; empty in a scene that is of no file
     std::vector<Material> materials;   // at least one where there are triangles
     std::vector<TextureImage> images;  // those that materials use

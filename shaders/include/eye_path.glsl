@@ -308,6 +308,7 @@ void gather(inout EyePath path, Vertex v) {
     if (HAS_GLOSS) {
         path.weight.weight = path.at.throughput * (1.0 / PI);
         hit_surface[path.pixel] = HitSurface(v.hit.triangle, v.hit.barycentric, pack_direction(v.wo));
+        if (HAS_INSTANCES) hit_instance[path.pixel] = v.hit.instance;
         path.position.state = hit_state(HIT_DIFFUSE | gathering_sides(v.bsdf), uvec3(1023u));
     } else {
         path.weight.weight = path.at.throughput * v.bsdf.diffuse * (1.0 / PI);

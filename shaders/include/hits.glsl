@@ -8,12 +8,19 @@ HIT_POSITION(STORES)
 HIT_WEIGHT(STORES)
 HIT_EMISSION(STORES)
 HIT_SURFACE(STORES)
+HIT_INSTANCE(STORES)
 GATHERED(STORES)
 HIT_POSITION(RECORDS)
 HIT_WEIGHT(RECORDS)
 HIT_EMISSION(RECORDS)
 HIT_SURFACE(RECORDS)
+HIT_INSTANCE(TEXELS)
 GATHERED(RECORDS)
+
+// Of a hit whose HitSurface is kept.
+uint instance_of_hit(uint pixel) {
+    return HAS_INSTANCES ? texelFetch(hit_instance_texels, int(pixel)).x : NO_INSTANCE;
+}
 
 // HitPosition::state. kind: HIT_*; albedo: 10 bits a channel.
 uint hit_state(uint kind, uvec3 albedo) { return kind | (albedo.x | albedo.y << 10u | albedo.z << 20u) << HIT_BITS; }

@@ -11,6 +11,7 @@ MATERIALS(RECORDS)
 TEXCOORDS(FLOAT_TEXELS)
 VERTEX_COLORS(TEXELS)
 TANGENTS(TEXELS)
+INSTANCES(RECORDS)
 
 // TriangleShading::material and what else it holds.
 uint material_of(uint word) { return word & ~SHADING_FLAT; }
@@ -22,6 +23,20 @@ vec3 absorption_of(uint index) {
 }
 
 bool has(SurfaceMaterial material, uint flag) { return (material.flags & flag) != 0u; }
+
+// From the space of an instance's mesh to the scene frame.
+vec3 linear_to_scene(Instance at, vec3 v) {
+    return vec3(dot(at.row_x.xyz, v), dot(at.row_y.xyz, v), dot(at.row_z.xyz, v));
+}
+vec3 point_to_scene(Instance at, vec3 p) {
+    return linear_to_scene(at, p) + vec3(at.row_x.w, at.row_y.w, at.row_z.w);
+}
+
+// A normal by the inverse transpose, which the cofactors are but for a factor. Not a unit vector, nor very small.
+vec3 normal_to_scene(Instance at, vec3 n) {
+    vec3 x = at.row_x.xyz / at.size, y = at.row_y.xyz / at.size, z = at.row_z.xyz / at.size;
+    return at.hand * vec3(dot(cross(y, z), n), dot(cross(z, x), n), dot(cross(x, y), n));
+}
 
 // Both sets of texture coordinates at a point of a triangle.
 vec4 texcoords_at(uint triangle, vec2 barycentric) {

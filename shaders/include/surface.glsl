@@ -19,6 +19,14 @@ struct Surface {
     uint material;
 };
 
+bool is_in_instance(Hit hit) { return HAS_INSTANCES && hit.instance != NO_INSTANCE; }
+
+// A corner's shading normal, in the scene frame.
+vec3 corner_normal(Hit hit, uint packed) {
+    vec3 n = unpack_direction(packed);
+    return is_in_instance(hit) ? normalize(normal_to_scene(instances_at(hit.instance), n)) : n;
+}
+
 // Moves the hit into its triangle: the slack lets it lie outside by rounding, which is far in barycentrics of a sliver.
 Surface surface_at(inout Hit hit, vec3 direction) {
     int texel = int(hit.triangle) * 3;
@@ -35,16 +43,26 @@ Surface surface_at(inout Hit hit, vec3 direction) {
     Surface surface;
     // Barycentrics put the point within the rounding error of the plane, however long the ray was.
     surface.position = v0.xyz + hit.barycentric.x * e1 + hit.barycentric.y * e2;
-    surface.geometric = face_normal(e1, e2);
-    surface.front = dot(surface.geometric, direction) < 0.0;
     surface.error = v0.w;
+    float hand = 1.0;
+    if (is_in_instance(hit)) {
+        Instance at = instances_at(hit.instance);
+        surface.position = point_to_scene(at, surface.position);
+        surface.error = at.error + at.stretch * v0.w;
+        e1 = linear_to_scene(at, e1);
+        e2 = linear_to_scene(at, e2);
+        hand = at.hand;
+    }
+    surface.geometric = face_normal(e1, e2);
+    if (HAS_INSTANCES) surface.geometric *= hand;
+    surface.front = dot(surface.geometric, direction) < 0.0;
     surface.material = material_of(corner.w);
     float side = surface.front ? 1.0 : -1.0;
     surface.geometric *= side;
     surface.normal = surface.geometric;
     if (!is_flat(corner.w)) {
-        vec3 n = (1.0 - hit.barycentric.x - hit.barycentric.y) * unpack_direction(corner.x) +
-                 hit.barycentric.x * unpack_direction(corner.y) + hit.barycentric.y * unpack_direction(corner.z);
+        vec3 n = (1.0 - hit.barycentric.x - hit.barycentric.y) * corner_normal(hit, corner.x) +
+                 hit.barycentric.x * corner_normal(hit, corner.y) + hit.barycentric.y * corner_normal(hit, corner.z);
         float squared = dot(n, n);
         // Opposite corner normals can cancel: the geometric normal stands in.
         if (squared > 1e-8) surface.normal = side * inversesqrt(squared) * n;
@@ -61,15 +79,23 @@ vec3 leave(Surface surface, vec3 direction) {
     return surface.position + side * surface.error * surface.geometric;
 }
 
+// A corner's tangent, in the scene frame.
+vec3 corner_tangent(Hit hit, uint packed) {
+    vec3 t = unpack_direction(packed);
+    return is_in_instance(hit) ? normalize(linear_to_scene(instances_at(hit.instance), t)) : t;
+}
+
 // The tangent of the triangle at the hit, on its front: that of the file, else the derivative of the point by u.
 // w: the sign of the bitangent; 0 where there is no tangent to be had.
 vec4 tangent_at(Hit hit, vec3 front_normal, bool second_uv) {
+    float hand = is_in_instance(hit) ? instances_at(hit.instance).hand : 1.0;  // a mirror turns the bitangent
     if (HAS_TANGENTS) {
         uvec4 corner = texelFetch(tangents_texels, int(hit.triangle));
         if ((corner.w & TANGENTS_GIVEN) == TANGENTS_GIVEN) {
-            vec3 t = (1.0 - hit.barycentric.x - hit.barycentric.y) * unpack_direction(corner.x) +
-                     hit.barycentric.x * unpack_direction(corner.y) + hit.barycentric.y * unpack_direction(corner.z);
-            return vec4(t, (corner.w & TANGENTS_TURNED) != 0u ? -1.0 : 1.0);
+            vec3 t = (1.0 - hit.barycentric.x - hit.barycentric.y) * corner_tangent(hit, corner.x) +
+                     hit.barycentric.x * corner_tangent(hit, corner.y) +
+                     hit.barycentric.y * corner_tangent(hit, corner.z);
+            return vec4(t, (corner.w & TANGENTS_TURNED) != 0u ? -hand : hand);
         }
     }
     int texel = int(hit.triangle) * 3;
@@ -84,9 +110,10 @@ vec4 tangent_at(Hit hit, vec3 front_normal, bool second_uv) {
     if (area == 0.0) return vec4(0.0);
     float turn = sign(area);
     vec3 t = turn * (e1 * dv.y - e2 * dv.x);
+    if (is_in_instance(hit)) t = linear_to_scene(instances_at(hit.instance), t);
     // glTF's v runs down the image, and its bitangent up: cross(n, t) where the image is not mirrored, and there (u, v)
     // turn clockwise.
-    return vec4(t, -turn);
+    return vec4(t, -turn * hand);
 }
 
 // The normal `front_normal` bent by a normal texture; both on the front of the triangle.

@@ -1,7 +1,9 @@
 // Nearest hit of a ray with the 4-wide quantised BVH. SIMD group: the subgroup, the lanes that run together. Reads
 // nodes and triangles; O(log triangles) steps a ray. The stack holds exactly what this tree can need. Fails only by
-// running out of `steps`, and says so. Written for software Vulkan, where a load of 16 bytes from texels is one call
-// for eight lanes, every branch is run by every lane, and a store to an array is a branch for each lane.
+// running out of `steps`, and says so. Where a child of the scene's tree is an instance of a mesh the ray goes on in
+// the mesh's space and through the mesh's own tree, and then back in the scene's. Written for software Vulkan, where a
+// load of 16 bytes from texels is one call for eight lanes, every branch is run by every lane, and a store to an array
+// is a branch for each lane.
 #ifndef TRAVERSE_GLSL
 #define TRAVERSE_GLSL
 
@@ -12,31 +14,57 @@ struct Hit {
     float t;         // distance along the direction, scene frame
     uint triangle;   // into the leaf-ordered triangles
     vec2 barycentric;
+    uint instance;   // that it is a triangle of; NO_INSTANCE: of none
 };
 
 #define TRACE_MISS 0u
 #define TRACE_HIT 1u
 #define TRACE_UNFINISHED 2u  // out of steps: nothing is known of the ray
 
-void intersect_triangle(uint index, vec3 origin, vec3 direction, inout Hit hit) {
+// A traversal that can be left and gone on with, so that lanes whose ray is done can take another one.
+struct Traversal {
+    vec3 origin;      // in an instance: in the mesh's space, beginning where the mesh does
+    vec3 direction;   //   and not a unit vector, so that distances are the scene's
+    vec3 inverse;     // 1 / direction
+    uint node;        // child_of what comes next; NO_NODE: the ray is done
+    uint leaf;        // a leaf put off until the lanes of the SIMD group have one, or NO_NODE
+    uint group;       // children of the latest node that wait
+    uint below;       // stack[top], kept here because a load from the stack takes long
+    uint top;         // groups on the stack, those before `group`, none of them empty
+    uint limit;       // group_near of the hit
+    Hit hit;          // nearest so far
+    // Only where the scene has instances.
+    vec3 outer_origin;     // the ray in the scene
+    vec3 outer_direction;
+    float begin;           // distance from there to `origin`
+    float stretch;         // length of `direction`
+    uint instance;         // that it is in, or NO_INSTANCE
+    uint bottom;           // groups on the stack when it went in
+};
+
+// From `origin` to the nearest hit so far.
+float distance_left(Traversal t) { return HAS_INSTANCES ? t.hit.t - t.begin : t.hit.t; }
+
+void intersect_triangle(uint index, inout Traversal t) {
     int texel = int(index) * 3;
     vec3 v0 = texelFetch(triangles_texels, texel).xyz;
     vec4 e1 = texelFetch(triangles_texels, texel + 1);
     vec4 e2 = texelFetch(triangles_texels, texel + 2);
-    vec3 p = cross(direction, e2.xyz);
+    vec3 p = cross(t.direction, e2.xyz);
     float inverse = 1.0 / dot(e1.xyz, p);
-    vec3 s = origin - v0;
+    vec3 s = t.origin - v0;
     // Both triangles of a shared edge accept a hit within rounding of it: closed meshes stay closed.
     vec2 slack = vec2(e1.w, e2.w) * (max(abs(s.x), max(abs(s.y), abs(s.z))) * abs(inverse));
+    if (HAS_INSTANCES) slack *= t.stretch;
     float u = dot(s, p) * inverse;
     vec3 q = cross(s, e1.xyz);
-    float v = dot(direction, q) * inverse;
-    float t = dot(e2.xyz, q) * inverse;
-    // A parallel ray divides by zero: u, v, t are then infinite or NaN and a comparison fails.
+    float v = dot(t.direction, q) * inverse;
+    float distance = dot(e2.xyz, q) * inverse;
+    // A parallel ray divides by zero: u, v and the distance are then infinite or NaN and a comparison fails.
     // At the tip of a needle the third edge alone would let pass what is far beyond it.
     if (u >= -slack.x && v >= -slack.y && u + v <= 1.0 + max(slack.x, slack.y) && u <= 1.0 + slack.x &&
-        v <= 1.0 + slack.y && t > 0.0 && t < hit.t) {
-        hit = Hit(t, index, vec2(u, v));
+        v <= 1.0 + slack.y && distance > 0.0 && distance < distance_left(t)) {
+        t.hit = Hit(HAS_INSTANCES ? t.begin + distance : distance, index, vec2(u, v), t.instance);
     }
 }
 
@@ -83,31 +111,21 @@ uvec2 leaf_triangles(uint leaf) {
     return uvec2(first, first + (place >> 4u & 15u));
 }
 
-// A traversal that can be left and gone on with, so that lanes whose ray is done can take another one.
-struct Traversal {
-    vec3 origin;
-    vec3 direction;
-    vec3 inverse;  // 1 / direction
-    uint node;     // child_of what comes next; NO_NODE: the ray is done
-    uint leaf;     // a leaf put off until the lanes of the SIMD group have one, or NO_NODE
-    uint group;    // children of the latest node that wait
-    uint below;    // stack[top], kept here because a load from the stack takes long
-    uint top;      // groups on the stack, those before `group`, none of them empty
-    uint limit;    // group_near of the hit
-    Hit hit;       // nearest so far
-};
-
 // The groups before the latest, from stack[1] on. stack[0] is NO_GROUP, and there is room for a store of nothing when
 // the stack is full.
 uint stack[STACK + 1u];
 
+// Tiny components keep their sign and stay finite: 0 * infinity is no number.
+vec3 inverse_of(vec3 direction) {
+    return 1.0 / mix(direction, mix(vec3(1e-20), vec3(-1e-20), lessThan(direction, vec3(0.0))),
+                     lessThan(abs(direction), vec3(1e-20)));
+}
+
 Traversal begin_traversal(vec3 origin, vec3 direction) {
-    // Tiny components keep their sign and stay finite: 0 * infinity is no number.
-    vec3 d = mix(direction, mix(vec3(1e-20), vec3(-1e-20), lessThan(direction, vec3(0.0))),
-                 lessThan(abs(direction), vec3(1e-20)));
     stack[0] = NO_GROUP;
-    Hit nothing = Hit(FAR, 0u, vec2(0.0));
-    return Traversal(origin, direction, 1.0 / d, 0u, NO_NODE, NO_GROUP, NO_GROUP, 0u, 0xffffffffu, nothing);
+    Hit nothing = Hit(FAR, 0u, vec2(0.0), NO_INSTANCE);
+    return Traversal(origin, direction, inverse_of(direction), 0u, NO_NODE, NO_GROUP, NO_GROUP, 0u, 0xffffffffu,
+                     nothing, origin, direction, 0.0, 1.0, NO_INSTANCE, 0u);
 }
 
 Traversal no_traversal() {
@@ -116,13 +134,16 @@ Traversal no_traversal() {
     return t;
 }
 
+// Groups on the stack that are not to be taken: in an instance those of the scene's tree.
+#define BOTTOM(t) (HAS_INSTANCES ? (t).bottom : 0u)
+
 // Where `wants`: takes the nearest waiting child that is not behind the hit into children and slot, and wants no more.
 // Software Vulkan runs a loop once whatever its condition: this one is left at its end and most often runs just once.
 // A macro, because it stands in the innermost loop, where copies of the traversal in and out of a function cost time.
 // It uses the names t, steps, stack, wants, children and slot of traverse().
 #define TAKE_WAITING()                                                                        \
     while (true) {                                                                            \
-        bool pops = wants && t.group == NO_GROUP && t.top > 0u;                               \
+        bool pops = wants && t.group == NO_GROUP && t.top > BOTTOM(t);                        \
         t.group = pops ? t.below : t.group;                                                   \
         t.top -= uint(pops);                                                                  \
         t.below = stack[t.top];                                                               \
@@ -133,8 +154,61 @@ Traversal no_traversal() {
         t.group = takes ? group_rest(t.group) : looks ? NO_GROUP : t.group;                   \
         steps -= int(looks);                                                                  \
         wants = wants && !takes;                                                              \
-        if (!wants || t.top == 0u) break;                                                     \
+        if (!wants || t.top == BOTTOM(t)) break;                                              \
     }
+
+bool is_instance(uint node) { return HAS_INSTANCES && node != NO_NODE && (node & BVH_ENTER) != 0u; }
+
+// A bound of the rounding of what is a point of the scene frame, where it is taken to the mesh's space.
+#define ENTER_ERROR 2e-6
+
+// Where the node is an instance: goes on in its mesh; false where the ray misses that, or has met something before.
+// The ray goes on from where it enters the box [-1, 1]^3 of the mesh's space, so that coordinates there are as small as
+// its boxes' padding is meant for, however small the mesh is in the scene. The box is larger by the rounding of what
+// enters it: nothing of the mesh is passed over.
+bool enter_instance(inout Traversal t) {
+    int texel = int(t.node & ~(BVH_LEAF | BVH_ENTER)) * 4;
+    uvec4 a = texelFetch(nodes_texels, texel);
+    vec4 b = uintBitsToFloat(texelFetch(nodes_texels, texel + 1));
+    vec4 c = uintBitsToFloat(texelFetch(nodes_texels, texel + 2));
+    uvec4 last = texelFetch(nodes_texels, texel + 3);
+    vec3 x = b.xyz, y = vec3(b.w, c.xy), z = vec3(c.zw, uintBitsToFloat(last.x));
+    // The difference is all but exact near the instance, where it matters.
+    vec3 from_centre = t.outer_origin - uintBitsToFloat(a.xyz);
+    vec3 origin = vec3(dot(x, from_centre), dot(y, from_centre), dot(z, from_centre));
+    vec3 direction = vec3(dot(x, t.outer_direction), dot(y, t.outer_direction), dot(z, t.outer_direction));
+    vec3 inverse = inverse_of(direction);
+    vec3 half_box = 1.0 + ENTER_ERROR * vec3(dot(abs(x), vec3(1.0)), dot(abs(y), vec3(1.0)), dot(abs(z), vec3(1.0)));
+    vec3 middle = -origin * inverse;
+    vec3 half_length = half_box * abs(inverse);
+    vec3 near = middle - half_length, far = middle + half_length;
+    float begin = max(max(near.x, near.y), max(near.z, 0.0));
+    if (begin > min(min(far.x, far.y), min(far.z, t.hit.t))) return false;
+    t.origin = origin + begin * direction;
+    t.direction = direction;
+    t.inverse = inverse;
+    t.begin = begin;
+    t.stretch = length(direction);
+    t.instance = a.w & ~BVH_INSTANCE;
+    t.node = last.y;
+    bool pushes = t.group != NO_GROUP;
+    stack[t.top + 1u] = t.group;
+    t.below = pushes ? t.group : t.below;
+    t.top += uint(pushes);
+    t.bottom = t.top;
+    t.group = NO_GROUP;
+    return true;
+}
+
+void leave_instance(inout Traversal t) {
+    t.origin = t.outer_origin;
+    t.direction = t.outer_direction;
+    t.inverse = inverse_of(t.outer_direction);
+    t.begin = 0.0;
+    t.stretch = 1.0;
+    t.instance = NO_INSTANCE;
+    t.bottom = 0u;
+}
 
 // How many lanes of the SIMD group say so. Software Vulkan makes a ballot in a third of the time of a sum or a vote.
 uint lanes(bool condition) { return subgroupBallotBitCount(subgroupBallot(condition)); }
@@ -166,6 +240,9 @@ void traverse(inout Traversal t, inout int steps, bool independent, bool running
             uvec4 a = texelFetch(nodes_texels, texel);
             uvec4 b = texelFetch(nodes_texels, texel + 1);
             uvec4 c = texelFetch(nodes_texels, texel + 2);
+            // An instance waits as a leaf does.
+            bool enters = HAS_INSTANCES && inner && (a.w & BVH_INSTANCE) != 0u;
+            if (HAS_INSTANCES) inner = inner && !enters;
             bvec3 negative = lessThan(t.inverse, vec3(0.0));
             vec3 cell = uintBitsToFloat(uvec3(a.w << 23u, a.w << 15u, a.w << 7u) & 0x7f800000u);
             vec3 scale = cell * t.inverse;
@@ -173,9 +250,10 @@ void traverse(inout Traversal t, inout int steps, bool independent, bool running
             ivec4 near = max(max(plane(negative.x ? b.w : b.x, scale.x, offset.x),
                                  plane(negative.y ? c.x : b.y, scale.y, offset.y)),
                              max(plane(negative.z ? c.y : b.z, scale.z, offset.z), ivec4(0)));
+            float left = distance_left(t);
             ivec4 far = min(min(plane(negative.x ? b.x : b.w, scale.x, offset.x),
                                 plane(negative.y ? b.y : c.x, scale.y, offset.y)),
-                            min(plane(negative.z ? b.z : c.y, scale.z, offset.z), ivec4(floatBitsToInt(t.hit.t))));
+                            min(plane(negative.z ? b.z : c.y, scale.z, offset.z), ivec4(floatBitsToInt(left))));
             uint present = inner ? a.w : 0u;
             // Distances are not negative and compare as words do; the slot takes the place of their last bits.
             uvec4 r = uvec4(near) & 0x7ffffffcu | uvec4(0u, 1u, 2u, 3u);
@@ -203,26 +281,38 @@ void traverse(inout Traversal t, inout int steps, bool independent, bool running
             bool wants = inner && (put_off || !any);
             TAKE_WAITING()
             t.node = inner ? wants ? NO_NODE : child_of(children, slot) : t.node;
+            if (HAS_INSTANCES) t.node |= enters ? BVH_LEAF | BVH_ENTER : 0u;
         } while (!should_leave(lanes(t.node < BVH_LEAF && steps > 0), going, independent ? INNER_SHARE : 0.0));
         // Here the node is a leaf or none, unless the steps are spent; so is what was put off.
         bool wants = goes_on && t.node >= BVH_LEAF;
+        bool enters = wants && is_instance(t.node);
         uint leaf = wants ? t.leaf : NO_NODE;
         for (uint i = 0u; i < 2u; ++i) {
             if (leaf != NO_NODE) {
                 uvec2 range = leaf_triangles(leaf);
                 do {
                     --steps;
-                    intersect_triangle(range.x, t.origin, t.direction, t.hit);
+                    intersect_triangle(range.x, t);
                 } while (++range.x < range.y);
             }
-            leaf = wants ? t.node : NO_NODE;
+            leaf = wants && !enters ? t.node : NO_NODE;
         }
         t.leaf = wants ? NO_NODE : t.leaf;
-        t.limit = group_near(t.hit.t);
-        bool asked = wants;
         steps -= int(wants);
+        if (enters && enter_instance(t)) wants = false;
+        t.limit = group_near(distance_left(t));
+        bool asked = wants;
         uint children = 0u, slot = 0u;
         TAKE_WAITING()
+        if (HAS_INSTANCES) {
+            // Where nothing waits in the mesh's tree: what does in the scene's.
+            bool leaves = wants && t.instance != NO_INSTANCE, done = wants && !leaves;
+            if (leaves) leave_instance(t);
+            t.limit = group_near(distance_left(t));
+            wants = leaves;
+            TAKE_WAITING()
+            wants = wants || done;
+        }
         t.node = asked ? wants ? NO_NODE : child_of(children, slot) : t.node;
         going = lanes(t.node != NO_NODE && steps > 0);
     } while (!should_leave(going, all, independent ? RAY_SHARE : 0.0));

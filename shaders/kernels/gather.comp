@@ -50,7 +50,7 @@ struct Receiver {
 void remake_surface(inout Receiver r) {
     HitSurface record = hit_surface_at(r.pixel);
     r.outgoing = unpack_direction(record.outgoing);
-    Hit hit = Hit(0.0, record.triangle, record.barycentric);
+    Hit hit = Hit(0.0, record.triangle, record.barycentric, instance_of_hit(r.pixel));
     r.surface = surface_at(hit, -r.outgoing);
     SurfaceMaterial material = material_at(hit, -r.outgoing, r.surface);
     uint flags = PATH_OUTSIDE;

@@ -77,17 +77,22 @@
 // Of pixels again: searches that are unfinished.
 #define SEARCH_STATES(ROW)     ROW(41, search_states, SearchState, band_pixel, one, storage, scratch, never)
 #define LIGHT_RAYS(ROW)        ROW(42, light_rays, LightRay, band_pixel, asked_groups, storage, scratch, never)
+// Of the scene again: instances of meshes, and of pixels in glossy scenes that have some, in which one the hit is.
+#define INSTANCES(ROW)         ROW(43, instances, Instance, instance, uploaded, uint_texels, scratch, never)
+#define HIT_INSTANCE(ROW)      ROW(44, hit_instance, uint, band_pixel, where_instances, words, scratch, never)
 
-#define SCENE_BUFFERS(ROW)                                                                               \
+#define FIRST_SCENE_BUFFERS(ROW)                                                                             \
     TRIANGLES(ROW) SHADING(ROW) TEXCOORDS(ROW) VERTEX_COLORS(ROW) TANGENTS(ROW) MATERIALS(ROW) TEXTURES(ROW) \
     IMAGES(ROW) LIGHTS(ROW) ENVIRONMENT(ROW) ENVIRONMENT_ALIAS(ROW) ASKED_LIGHTS(ROW)
+#define SCENE_BUFFERS(ROW) FIRST_SCENE_BUFFERS(ROW) INSTANCES(ROW)
 #define BUFFERS(ROW)                                                                                      \
-    PARAMS(ROW) STATUS(ROW) GRID(ROW) NODES(ROW) SCENE_BUFFERS(ROW)                                       \
+    PARAMS(ROW) STATUS(ROW) GRID(ROW) NODES(ROW) FIRST_SCENE_BUFFERS(ROW)                                 \
     HIT_POSITION(ROW) HIT_WEIGHT(ROW) HIT_EMISSION(ROW) AOVS(ROW) HIT_SURFACE(ROW) EYE_PATHS(ROW)         \
     SEARCHES(ROW) CURSORS(ROW) NEAREST(ROW) GATHERED(ROW) FILM(ROW) PIXELS(ROW) TALLY(ROW) MOMENTS(ROW)   \
     IMAGE(ROW) TRACES(ROW)                                                                                \
     PATHS(ROW) PHOTONS(ROW) PHOTON_FLUX(ROW) SORTED(ROW) SORTED_FLUX(ROW) PAIRS_A(ROW) PAIRS_B(ROW)       \
-    COUNTERS(ROW) QUANTILES(ROW) SEARCH_STATES(ROW) LIGHT_RAYS(ROW)
+    COUNTERS(ROW) QUANTILES(ROW) SEARCH_STATES(ROW) LIGHT_RAYS(ROW) INSTANCES(ROW)                        \
+    HIT_INSTANCE(ROW)
 // clang-format on
 
 // PARAMS(BINDING_NUMBER): its binding.

@@ -84,7 +84,8 @@ using uint = std::uint32_t;
        fixtures are, paths the rest: include/split.glsl, host/study/reference.h */                             \
     SETTING(24, SPLIT, caustics alone)                                                                         \
     /* eye paths ask for direct light, photons bring the rest: include/direct.glsl */                          \
-    SETTING(25, DIRECT, direct light asked for)
+    SETTING(25, DIRECT, direct light asked for)                                                                \
+    SCENE(26, INSTANCES, instances)              /* of meshes that are stored once */
 // clang-format on
 #define FEATURE_BIT(bit, NAME, words) VKCPPM_CONST uint FEATURE_##NAME = 1u << bit;
 #define FEATURE_BIT_OF_MATERIAL(bit, NAME, words, trait) FEATURE_BIT(bit, NAME, words)
@@ -166,6 +167,11 @@ FEATURE_TABLE(FEATURE_BIT_OF_MATERIAL, FEATURE_BIT, FEATURE_BIT)
 #define BVH_CHILDREN_SHIFT 3
 #define BVH_CHILDREN_MASK 7u
 
+// Top bit of the fourth word of a node: it is an InstanceNode.
+#define BVH_INSTANCE 0x80000000u
+#define BVH_ENTER 0x40000000u // with BVH_LEAF, where a word may name a node or a leaf: a node that is an instance
+#define NO_INSTANCE 0xffffffffu
+
 // Top bit of TriangleShading::material: the three normals are the geometric normal.
 #define SHADING_FLAT 0x80000000u
 
@@ -191,6 +197,28 @@ struct BvhNode {
                             // | its triangles << 4
     uint parent_leaves[2];  // where this is the first node of its siblings: the same of the parent's leaves
 };
+
+// What stands in the place of a BvhNode where a child is an instance of a mesh: the way into the mesh's space and the
+// root of its own tree. 64 bytes. That space is centred on the mesh and scaled by a power of two to a radius in
+// (1/2, 1], as the scene's frame is on the scene.
+struct InstanceNode {
+    vec3 centre;       // where the origin of the mesh's space is, scene frame
+    uint index;        // into the instances | BVH_INSTANCE
+    vec3 to_mesh[3];   // rows: mesh's space = rows * (scene frame - centre)
+    uint root;
+    uint parent_leaves[2];  // as of a BvhNode
+};
+
+// The way back, for what is met: 64 bytes, read as 4 uvec4 texels.
+#define FIELDS_Instance(FIELD, ARRAY, OPTIONAL) \
+    FIELD(vec4, row_x)      /* scene frame = row.xyz * mesh's space + row.w */ \
+    FIELD(vec4, row_y) \
+    FIELD(vec4, row_z) \
+    FIELD(float, error)     /* rays start so far off its planes, */ \
+    FIELD(float, stretch)   /*   and so many times the error of the triangle in its space more */ \
+    FIELD(float, hand)      /* -1: it is mirrored, and the front of a triangle is on its other side */ \
+    FIELD(float, size)      /* largest length of a row's xyz */
+RECORD(Instance)
 
 // Moeller-Trumbore form, 48 bytes, read as 3 vec4 texels.
 struct TriangleGeometry {
@@ -589,7 +617,7 @@ struct Launch {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(BvhNode) == 64);
+static_assert(sizeof(BvhNode) == 64 && sizeof(InstanceNode) == 64 && sizeof(Instance) == 64);
 static_assert(sizeof(TriangleGeometry) == 48);
 static_assert(sizeof(TriangleShading) == 16);
 static_assert(sizeof(SurfaceMaterial) == 144 && sizeof(TextureLookup) == 48 && sizeof(Light) == 96);

@@ -62,7 +62,8 @@ int main(int argc, char** argv) {
     app.add_option("--device", device.select, "As vkcppm takes it");
     app.add_option("--threads", threads, "Numbers of threads of lavapipe and the host (default: 1,2)")->delimiter(',');
     app.add_option("--runs", bench.runs, "Runs of each, of which the least counts (default: 3)");
-    app.add_option("--only", only, "Subjects: rays, bvh, gather, iterations, growth (default: all)")->delimiter(',');
+    app.add_option("--only", only, "Subjects: rays, bvh, gather, iterations, growth, instances (default: all)")
+        ->delimiter(',');
     app.add_option("--scene", bench.scenes,
                    "Further scenes for `iterations`, at 256x256 and 512x512 with 65,536 paths");
     app.add_option("--json", json_file, "The figures once more");
@@ -80,7 +81,8 @@ int main(int argc, char** argv) {
                                         {"bvh", bench_bvh},
                                         {"gather", bench_gather},
                                         {"iterations", bench_iterations},
-                                        {"growth", bench_growth}}) {
+                                        {"growth", bench_growth},
+                                        {"instances", bench_instances}}) {
         if (!only.empty() && std::ranges::find(only, name) == only.end()) continue;
         const Table table = subject(bench);
         print(table);

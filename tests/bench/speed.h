@@ -66,6 +66,7 @@ Table bench_bvh(const Bench& bench);
 Table bench_gather(const Bench& bench);
 Table bench_iterations(const Bench& bench);
 Table bench_growth(const Bench& bench);
+Table bench_instances(const Bench& bench);
 
 /// A closed room of 2 m with a lamp, a camera and eight bumpy spheres of about so many triangles in all.
 Scene bumpy_room(std::uint32_t triangles);
@@ -98,6 +99,7 @@ private:
     Scene scene_;
     Settings settings_;
     FlatScene flat_;
+    SceneOnDevice on_device_;
     Integrator integrator_;
     Report report_;
     Seconds least_;

@@ -72,7 +72,8 @@ Render::Render(Device& device, Scene scene, const Settings& wanted)
     : scene_(std::move(scene)),
       settings_(resolve_settings(wanted, scene_)),
       flat_(flatten(scene_)),
-      integrator_(device, flat_, camera_of(settings_, scene_), settings_) {
+      on_device_(device, flat_),
+      integrator_(on_device_, camera_of(settings_, scene_), settings_) {
     integrator_.fill(report_);
 }
 

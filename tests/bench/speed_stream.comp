@@ -31,7 +31,8 @@ void main() {
         traverse(traversal, steps, true, running);
         uint found = found_by(traversal);
         if (running && (found != TRACE_UNFINISHED || steps <= 0)) {
-            outputs[ray] = RayOutput(found, traversal.hit.t, traversal.hit.triangle, traversal.hit.barycentric, steps);
+            outputs[ray] = RayOutput(found, traversal.hit.t, traversal.hit.triangle, traversal.hit.barycentric, steps,
+                                          traversal.hit.instance);
             running = steps > 0;
             wants = true;
             traversal.node = NO_NODE;

@@ -248,6 +248,7 @@ protected:
         probe.input(Binding::params, std::vector{params});
         probe.input(Binding::lights, flat.lights);
         probe.input(Binding::shading, flat.shading);
+        probe.input(Binding::instances, flat.instances);
         probe.input(Binding::materials, flat.materials);
         probe.input(Binding::texcoords, flat.texcoords);
         probe.input(Binding::vertex_colors, flat.vertex_colors);

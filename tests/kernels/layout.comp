@@ -30,6 +30,7 @@ void bump(inout uint a[TEXTURE_COUNT]) { for (int i = 0; i < TEXTURE_COUNT; ++i)
 void bump(inout uint a[RADIUS_BINS]) { for (int i = 0; i < RADIUS_BINS; ++i) a[i] += ++ordinal; }
 void bump(inout float a[MAX_RINGS]) { for (int i = 0; i < MAX_RINGS; ++i) a[i] += float(++ordinal); }
 void bump(inout vec3 a[LAYERS]) { for (int i = 0; i < LAYERS; ++i) bump(a[i]); }
+void bump(inout vec3 a[3]) { for (int i = 0; i < 3; ++i) bump(a[i]); }
 void bump(inout vec2 a[3]) { for (int i = 0; i < 3; ++i) bump(a[i]); }
 void bump(inout vec2 a[MAX_SECTORS / 2]) { for (int i = 0; i < MAX_SECTORS / 2; ++i) bump(a[i]); }
 void bump(inout vec2 a[MAX_SECTORS]) { for (int i = 0; i < MAX_SECTORS; ++i) bump(a[i]); }
@@ -79,6 +80,8 @@ BLOCK(FIRST + 23, LightRayBlock, LightRay, light_rays)
 BLOCK(FIRST + 24, EyeStateBlock, EyeState, eye_states)
 BLOCK(FIRST + 25, SearchStateBlock, SearchState, search_states)
 BLOCK(FIRST + 26, AskedLightBlock, AskedLight, asked_lights)
+BLOCK(FIRST + 27, InstanceBlock, Instance, instance_records)
+BLOCK(FIRST + 28, InstanceNodeBlock, InstanceNode, instance_nodes)
 
 void main() {
     if (gl_GlobalInvocationID.x != 0u) return;
@@ -103,6 +106,8 @@ void main() {
     ROUND_TRIP(Params, params_array, MEMBERS_PARAMS)
     ROUND_TRIP(Launch, launches, MEMBERS_LAUNCH)
     ROUND_TRIP(TextureLookup, texture_lookups, MEMBERS_TEXTURE_LOOKUP)
+    ROUND_TRIP(Instance, instance_records, MEMBERS_INSTANCE)
+    ROUND_TRIP(InstanceNode, instance_nodes, MEMBERS_INSTANCE_NODE)
     ROUND_TRIP(HitSurface, hit_surfaces, MEMBERS_HIT_SURFACE)
     ROUND_TRIP(TraceState, trace_states, MEMBERS_TRACE_STATE)
     ROUND_TRIP(LightRay, light_rays, MEMBERS_LIGHT_RAY)

@@ -6,6 +6,8 @@
 // clang-format off
 #define MEMBERS_BVH_NODE X(origin) X(exponents) X(low_x) X(low_y) X(low_z) X(high_x) X(high_y) X(high_z) \
     X(children) X(unused) X(leaves) X(parent_leaves)
+#define MEMBERS_INSTANCE_NODE X(centre) X(index) X(to_mesh) X(root) X(parent_leaves)
+#define MEMBERS_INSTANCE X(row_x) X(row_y) X(row_z) X(error) X(stretch) X(hand) X(size)
 #define MEMBERS_TRIANGLE_GEOMETRY X(v0) X(error) X(e1) X(slack_u) X(e2) X(slack_v)
 #define MEMBERS_TRIANGLE_SHADING X(normal) X(material)
 #define MEMBERS_SURFACE_MATERIAL \

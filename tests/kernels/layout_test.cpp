@@ -32,6 +32,8 @@ template <typename T, std::size_t N, typename Visit> void scalars(T (&array)[N],
 #define VISITOR(Struct, MEMBERS) \
     template <typename Visit> void each_scalar(gpu::Struct& value, Visit visit) { MEMBERS }
 VISITOR(BvhNode, MEMBERS_BVH_NODE)
+VISITOR(InstanceNode, MEMBERS_INSTANCE_NODE)
+VISITOR(Instance, MEMBERS_INSTANCE)
 VISITOR(TriangleGeometry, MEMBERS_TRIANGLE_GEOMETRY)
 VISITOR(TriangleShading, MEMBERS_TRIANGLE_SHADING)
 VISITOR(SurfaceMaterial, MEMBERS_SURFACE_MATERIAL)
@@ -120,7 +122,7 @@ protected:
         F(7, HitPosition) F(8, HitWeight) F(9, HitEmission) F(10, Gathered) F(11, PixelState) F(12, Aovs) F(13, Film) \
             F(14, PathState) F(15, Cursor) F(16, Grid) F(17, Status) F(18, Params) F(19, Launch)                      \
                 F(20, TextureLookup) F(21, HitSurface) F(22, TraceState) F(23, LightRay) \
-                    F(24, EyeState) F(25, SearchState) F(26, AskedLight)
+                    F(24, EyeState) F(25, SearchState) F(26, AskedLight) F(27, Instance) F(28, InstanceNode)
 // clang-format on
 
 TEST_F(Layout, EveryMemberStandsWhereTheHostPutsIt) {

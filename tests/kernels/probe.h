@@ -155,6 +155,7 @@ struct RayOutput {
     uint triangle;
     vec2 barycentric;
     int steps;  // spent
+    uint instance;
 };
 struct SurfaceOutput {
     uint found;
@@ -167,6 +168,7 @@ struct SurfaceOutput {
     uint material;
     vec3 outside;  // leave() against the ray
     vec3 inside;   // leave() along the ray
+    uint instance;
 };
 
 #ifdef __cplusplus

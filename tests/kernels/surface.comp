@@ -23,7 +23,7 @@ void main() {
     if (found == TRACE_HIT) {
         Surface s = surface_at(hit, direction);
         result = SurfaceOutput(found, hit.triangle, s.position, s.geometric, s.normal, s.error, s.front ? 1u : 0u,
-                               s.material, leave(s, -direction), leave(s, direction));
+                               s.material, leave(s, -direction), leave(s, direction), hit.instance);
     }
     outputs[i] = result;
 }

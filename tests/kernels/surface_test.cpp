@@ -61,6 +61,7 @@ TEST_F(SurfaceAtHit, LiesOnItsPlaneAndFacesTheRay) {
         probe.input(Binding::nodes, flat.bvh.nodes);
         probe.input(Binding::triangles, flat.triangles);
         probe.input(Binding::shading, flat.shading);
+        probe.input(Binding::instances, flat.instances);
         probe.input(PROBE_INPUT, rays);
         probe.output<gpu::SurfaceOutput>(PROBE_OUTPUT, rays.size());
         probe.run(rays.size(),

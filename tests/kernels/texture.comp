@@ -20,7 +20,7 @@ void main() {
     if (launch.argument == 0u) {
         result.value = texture_at(at.texture, at.coordinates);
     } else {
-        Hit hit = Hit(0.0, at.triangle, at.barycentric);
+        Hit hit = Hit(0.0, at.triangle, at.barycentric, NO_INSTANCE);
         Surface surface = surface_at(hit, at.direction);
         SurfaceMaterial material = material_at(hit, at.direction, surface);
         result.value = vec4(material.color, material.opacity);

@@ -58,6 +58,7 @@ protected:
         Probe probe("texture", texture_words, flat.bvh.stack, bits_of(flat.features));
         probe.input(Binding::triangles, flat.triangles);
         probe.input(Binding::shading, flat.shading);
+        probe.input(Binding::instances, flat.instances);
         probe.input(Binding::materials, flat.materials);
         probe.input(Binding::texcoords, flat.texcoords);
         probe.input(Binding::vertex_colors, flat.vertex_colors);

@@ -14,5 +14,6 @@ void main() {
     int steps = int(launch.argument);
     Hit hit;
     uint found = trace(rays[i].origin, rays[i].direction, steps, hit);
-    outputs[i] = RayOutput(found, hit.t, hit.triangle, hit.barycentric, int(launch.argument) - steps);
+    outputs[i] = RayOutput(found, hit.t, hit.triangle, hit.barycentric, int(launch.argument) - steps,
+                           hit.instance);
 }

@@ -14,6 +14,7 @@
 #include "scene/diagnosis/alpha.h"
 #include "scene/diagnosis/glass.h"
 #include "scene/diagnosis/shell.h"
+#include "scene/instances.h"
 #include "scene/warnings.h"
 
 namespace vkcppm {
@@ -46,12 +47,13 @@ bool contains(const Shell& shell, const glm::dvec3& p) {
     return glm::all(glm::lessThanEqual(shell.low, p)) && glm::all(glm::lessThanEqual(p, shell.high));
 }
 
-/// The closed shells of solid glass. Their solid angles are limited in number: past the limit nothing is found.
+/// The closed shells of solid glass in one space: in the world, or of one shared mesh. Their solid angles are limited
+/// in number: past the limit nothing is found.
 class SolidGlass {
 public:
-    SolidGlass(const Scene& scene, std::span<const Shell> shells) : scene_(scene) {
+    SolidGlass(const Scene& scene, std::span<const Shell> shells, std::optional<std::uint32_t> mesh) : scene_(scene) {
         for (const Shell& shell : shells) {
-            if (!shell.is_closed()) continue;
+            if (!shell.is_closed() || mesh_of(scene, shell.triangles.front()) != mesh) continue;
             low_ = closed_.empty() ? shell.low : glm::min(low_, shell.low);
             high_ = closed_.empty() ? shell.high : glm::max(high_, shell.high);
             closed_.push_back(&shell);
@@ -116,6 +118,10 @@ private:
     /// "nodes[3] 'bottle', materials[0] 'glass'"
     std::string triangle_name(std::uint32_t triangle) const {
         const std::string material = material_name(scene_.triangles[triangle].material);
+        if (const auto mesh = mesh_of(scene_, triangle)) {
+            const MeshNode& node = scene_.mesh_nodes[scene_.meshes[*mesh].node];
+            return fmt::format("the mesh of {}, {}", name_of("nodes", node.index, node.name), material);
+        }
         const auto next = std::ranges::upper_bound(scene_.mesh_nodes, triangle, {}, &MeshNode::first_triangle);
         if (next == scene_.mesh_nodes.begin()) return material;
         const MeshNode& node = *(next - 1);
@@ -142,9 +148,17 @@ private:
 
     void check_solid_glass() {
         const std::vector<Shell> shells = find_shells(scene_, triangles_of(scene_, is_solid_glass));
-        SolidGlass glass(scene_, shells);
-        for (const Shell& shell : shells) check_solid(shell, glass);
-        if (!glass.empty()) check_lights_inside(glass);
+        // Ordered by their first triangles, and so by the space that they are in.
+        for (std::size_t first = 0, last; first < shells.size(); first = last) {
+            const auto mesh = mesh_of(scene_, shells[first].triangles.front());
+            for (last = first; last < shells.size(); ++last) {
+                if (mesh_of(scene_, shells[last].triangles.front()) != mesh) break;
+            }
+            const auto here = std::span(shells).subspan(first, last - first);
+            SolidGlass glass(scene_, here, mesh);
+            for (const Shell& shell : here) check_solid(shell, glass);
+            if (!mesh && !glass.empty()) check_lights_inside(glass);
+        }
     }
 
     void check_solid(const Shell& shell, SolidGlass& glass) {
@@ -185,31 +199,28 @@ private:
 
     // ---- sizes ----
 
-    /// Diagonal of the box round triangles [first, last); 0 of none.
-    double extent(std::size_t first, std::size_t last) const {
-        if (first >= last) return 0.0;
-        glm::dvec3 low = scene_.positions[scene_.triangles[first].vertex[0]], high = low;
-        for (std::size_t i = first; i < last; ++i) {
-            for (const std::uint32_t v : scene_.triangles[i].vertex) {
-                low = glm::min(low, scene_.positions[v]);
-                high = glm::max(high, scene_.positions[v]);
-            }
-        }
-        return glm::length(high - low);
+    static double extent(const SceneBox& box) { return box.is_empty() ? 0.0 : glm::length(box.high - box.low); }
+
+    void check_extent(std::uint32_t first, double part, double whole) {
+        if (part >= least_extent * whole || emits(scene_.materials[scene_.triangles[first].material])) return;
+        warnings_.add("too small beside the scene: the light on it is blurred over all of it",
+                      fmt::format("{} is {:.3g} m across, the scene {:.3g} m", triangle_name(first), part, whole));
     }
 
     void check_extents() {
-        const double whole = extent(0, scene_.triangles.size());
+        const TriangleRange world = world_triangles(scene_);
+        const std::vector<SceneBox> boxes = instance_boxes(scene_);
+        SceneBox all = box_of(scene_, world);
+        for (const SceneBox& box : boxes) all.grow(box);
+        const double whole = extent(all);
         for (std::size_t i = 0; i < scene_.mesh_nodes.size(); ++i) {
-            const std::size_t first = scene_.mesh_nodes[i].first_triangle;
-            const std::size_t last =
-                i + 1 < scene_.mesh_nodes.size() ? scene_.mesh_nodes[i + 1].first_triangle : scene_.triangles.size();
-            const double part = extent(first, last);
-            if (first >= last || part >= least_extent * whole) continue;
-            if (emits(scene_.materials[scene_.triangles[first].material])) continue;
-            warnings_.add("too small beside the scene: the light on it is blurred over all of it",
-                          fmt::format("{} is {:.3g} m across, the scene {:.3g} m", triangle_name(std::uint32_t(first)),
-                                      part, whole));
+            const std::uint32_t first = scene_.mesh_nodes[i].first_triangle;
+            const std::uint32_t last =
+                i + 1 < scene_.mesh_nodes.size() ? scene_.mesh_nodes[i + 1].first_triangle : world.last;
+            if (first < last) check_extent(first, extent(box_of(scene_, {first, last})), whole);
+        }
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            check_extent(scene_.meshes[scene_.instances[i].mesh].first_triangle, extent(boxes[i]), whole);
         }
     }
 

@@ -11,6 +11,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "scene/instances.h"
+
 namespace vkcppm {
 namespace {
 
@@ -25,17 +27,19 @@ struct Welding {
 Welding weld(const Scene& scene, std::span<const std::uint32_t> triangles) {
     struct Vertex {
         double x, y, z;
+        std::uint32_t mesh;  // positions in different spaces are never one
         std::uint32_t index;
-        auto position() const { return std::tie(x, y, z); }
+        auto position() const { return std::tie(mesh, x, y, z); }
     };
     Welding welding{std::vector<std::uint32_t>(scene.positions.size(), none), 0};
     std::vector<Vertex> vertices;
     for (const std::uint32_t i : triangles) {
+        const std::uint32_t mesh = mesh_of(scene, i).value_or(none);
         for (const std::uint32_t vertex : scene.triangles[i].vertex) {
             if (welding.point[vertex] != none) continue;
             welding.point[vertex] = 0;
             const glm::dvec3 p = scene.positions[vertex];
-            vertices.push_back({p.x, p.y, p.z, vertex});
+            vertices.push_back({p.x, p.y, p.z, mesh, vertex});
         }
     }
     std::ranges::sort(vertices, [](const Vertex& a, const Vertex& b) { return a.position() < b.position(); });

@@ -9,6 +9,7 @@
 
 #include "scene/bad_scene.h"
 #include "scene/gltf/values.h"
+#include "scene/instances.h"
 
 namespace vkcppm {
 
@@ -63,17 +64,9 @@ std::optional<Camera> read_camera(const GltfFile& file, const tinygltf::Model& m
 }
 
 Camera framing_camera(const Scene& scene) {
-    glm::dvec3 low(0.0), high(0.0);
-    bool first = true;
-    for (const Triangle& triangle : scene.triangles) {
-        for (const std::uint32_t vertex : triangle.vertex) {
-            low = first ? scene.positions[vertex] : glm::min(low, scene.positions[vertex]);
-            high = first ? scene.positions[vertex] : glm::max(high, scene.positions[vertex]);
-            first = false;
-        }
-    }
-    const glm::dvec3 centre = 0.5 * low + 0.5 * high;
-    const double radius = first ? 1.0 : 0.5 * glm::length(high - low);
+    const SceneBox box = world_box(scene);
+    const glm::dvec3 centre = box.is_empty() ? glm::dvec3(0.0) : 0.5 * box.low + 0.5 * box.high;
+    const double radius = box.is_empty() ? 1.0 : 0.5 * glm::length(box.high - box.low);
     constexpr double margin = 1.05;
     const glm::dvec3 towards_camera = glm::normalize(glm::dvec3(0.0, 0.35, 1.0));
     Camera camera;

@@ -61,7 +61,7 @@ void warn_of_ignored_parts(const GltfFile& file, Warnings& warnings) {
     }
 }
 
-Scene read_scene(const GltfFile& file, const tinygltf::Model& model) {
+Scene read_scene(const GltfFile& file, const tinygltf::Model& model, Sharing sharing) {
     Scene scene;
     Warnings warnings;
     warn_of_ignored_parts(file, warnings);
@@ -72,7 +72,7 @@ Scene read_scene(const GltfFile& file, const tinygltf::Model& model) {
     scene.materials = read_materials(file, used_materials(file, model, nodes), images, warnings);
     scene.images = images.take_images();
     scene.hash = images.hash();
-    add_meshes(file, model, accessors, nodes, scene, warnings);
+    add_meshes(file, model, accessors, nodes, sharing, scene, warnings);
     for (const PlacedNode& node : nodes) {
         if (auto camera = read_camera(file, model, node, warnings)) scene.cameras.push_back(std::move(*camera));
         if (auto light = read_light(file, model, node, warnings)) scene.lights.push_back(std::move(*light));
@@ -88,11 +88,11 @@ Scene read_scene(const GltfFile& file, const tinygltf::Model& model) {
 
 }  // namespace
 
-Scene load_gltf(const std::filesystem::path& path) {
+Scene load_gltf(const std::filesystem::path& path, Sharing sharing) {
     try {
         const GltfFile file = read_gltf_file(path);
         const tinygltf::Model model = parse_model(file);
-        Scene scene = read_scene(file, model);
+        Scene scene = read_scene(file, model, sharing);
         scene.file = path;
         return scene;
     } catch (const Error&) {

@@ -16,6 +16,7 @@
 #include "scene/gltf/placement.h"
 #include "scene/gltf/primitives.h"
 #include "scene/gltf/values.h"
+#include "scene/instances.h"
 
 namespace vkcppm {
 
@@ -55,23 +56,48 @@ template <typename T> std::optional<T> element(const std::vector<T>& values, std
     return i < values.size() ? std::optional(values[i]) : std::nullopt;
 }
 
+/// Triangles that sharing must spare, over all meshes, and that a mesh must have to be shared.
+constexpr std::size_t most_copied = std::size_t(1) << 18;
+constexpr std::size_t fewest_shared = 8;
+
+/// A mesh as nodes show it: of those with weights of their own for its morph targets each has a mesh of its own.
+struct MeshKey {
+    int mesh;
+    int node;  // -1 but for those
+    auto operator<=>(const MeshKey&) const = default;
+};
+
+/// What a mesh adds to the scene.
+struct MeshUse {
+    std::size_t triangles = 0;
+    std::size_t instances = 0;
+    bool is_shareable = false;
+    bool is_shared = false;
+    std::optional<std::uint32_t> shared;  // into Scene::meshes, once it is read
+};
+
 class MeshAdder {
 public:
-    MeshAdder(const GltfFile& file, const tinygltf::Model& model, GltfAccessors& accessors, Scene& scene,
-              Warnings& warnings)
+    MeshAdder(const GltfFile& file, const tinygltf::Model& model, GltfAccessors& accessors, Sharing sharing,
+              Scene& scene, Warnings& warnings)
         : file_(file),
           model_(model),
           accessors_(accessors),
           primitives_(file, model, accessors, warnings),
+          sharing_(sharing),
           scene_(scene),
           warnings_(warnings),
           file_materials_(scene.materials.size()) {}
 
     void add(const std::vector<PlacedNode>& nodes) {
-        check_totals(nodes);
+        plan(nodes);
         for (const PlacedNode& node : nodes) {
             if (model_.nodes[node.index].mesh >= 0) add_node(node);
         }
+        const auto world = std::uint32_t(scene_.triangles.size());
+        for (SharedMesh& mesh : scene_.meshes) mesh.first_triangle += world;
+        if (!shared_triangles_.empty()) scene_.triangles.reserve(world + shared_triangles_.size());
+        scene_.triangles.insert(scene_.triangles.end(), shared_triangles_.begin(), shared_triangles_.end());
         if (degenerate_triangles_ > 0) {
             warnings_.add(fmt::format("{} dropped", degenerate_triangles_), "triangles of zero area");
         }
@@ -84,8 +110,23 @@ public:
     }
 
 private:
-    /// Limits what the meshes of all nodes add up to, before any is read: a small file can name one mesh very often.
-    void check_totals(const std::vector<PlacedNode>& nodes) const {
+    MeshKey key_of(int node) const {
+        const int mesh = model_.nodes[node].mesh;
+        const bool own_weights = std::ranges::any_of(model_.meshes[mesh].primitives,
+                                                     [](const auto& source) { return !source.targets.empty(); }) &&
+                                 file_.document["nodes"][node].contains("weights");
+        return {mesh, own_weights ? node : -1};
+    }
+
+    bool emits(int mesh) const {
+        return std::ranges::any_of(model_.meshes[mesh].primitives, [&](const tinygltf::Primitive& source) {
+            return source.material >= 0 && scene_.materials[source.material].emission != glm::vec3(0.0f);
+        });
+    }
+
+    /// Decides which meshes are shared, and limits what those of all nodes add up to, before any is read: a small file
+    /// can name one mesh very often.
+    void plan(const std::vector<PlacedNode>& nodes) {
         std::vector<std::size_t> triangles(model_.meshes.size());
         for (std::size_t i = 0; i < triangles.size(); ++i) {
             for (const tinygltf::Primitive& source : model_.meshes[i].primitives) {
@@ -93,7 +134,7 @@ private:
                 check_total(triangles[i], max_triangles, fmt::format("triangles of meshes[{}]", i), file_);
             }
         }
-        std::size_t all_triangles = 0, all_primitives = 0, all_instances = 0;
+        std::size_t all_primitives = 0, all_instances = 0;
         for (const PlacedNode& node : nodes) {
             const int mesh = model_.nodes[node.index].mesh;
             if (mesh < 0) continue;
@@ -101,9 +142,23 @@ private:
             const std::size_t count = instance_count(file_, accessors_, node.index);
             check_total(count, max_instances, fmt::format("instances of nodes[{}]", node.index), file_);
             check_total(all_instances += count, max_instances, "instances", file_);
-            check_total(all_triangles += count * triangles[mesh], max_triangles, "triangles", file_);
-            check_total(all_primitives += count * model_.meshes[mesh].primitives.size(), max_primitives, "primitives",
-                        file_);
+            MeshUse& use = uses_[key_of(node.index)];
+            use.triangles = triangles[mesh];
+            use.instances += count;
+        }
+        std::size_t spared = 0;
+        for (auto& [key, use] : uses_) {
+            use.is_shareable = sharing_ != Sharing::never && use.instances > 1 && use.triangles > 0 && !emits(key.mesh);
+            if (sharing_ == Sharing::by_cost && use.triangles < fewest_shared) use.is_shareable = false;
+            if (use.is_shareable) spared += (use.instances - 1) * use.triangles;
+        }
+        std::size_t all_triangles = 0;
+        for (auto& [key, use] : uses_) {
+            use.is_shared = use.is_shareable && (sharing_ == Sharing::always || spared > most_copied);
+            const std::size_t copies = use.is_shared ? 1 : use.instances;
+            check_total(all_triangles += copies * use.triangles, max_triangles, "triangles", file_);
+            check_total(all_primitives += copies * model_.meshes[key.mesh].primitives.size(), max_primitives,
+                        "primitives", file_);
         }
         const std::size_t needed = all_triangles * bytes_a_triangle, there = available_memory();
         if (needed <= there) return;
@@ -113,28 +168,59 @@ private:
     }
 
     void add_node(const PlacedNode& node) {
-        const int mesh = model_.nodes[node.index].mesh;
         const std::string object = fmt::format("nodes[{}]", node.index);
         if (model_.nodes[node.index].skin >= 0) warnings_.add("its skin is ignored, it is at rest", object);
         scene_.mesh_nodes.push_back(
             {std::uint32_t(node.index), model_.nodes[node.index].name, std::uint32_t(scene_.triangles.size())});
+        MeshUse& use = uses_.at(key_of(node.index));
         for (const glm::dmat4& to_world : instances(file_, accessors_, node)) {
             const std::optional<Placement> placement = Placement::of(to_world);
             if (!placement) {
                 warnings_.add("its mesh is dropped, the transform is singular", object);
                 continue;
             }
-            VertexBlocks blocks;
-            for (std::size_t i = 0; i < model_.meshes[mesh].primitives.size(); ++i) {
-                add_primitive(node.index, mesh, i, *placement, blocks);
+            if (use.is_shared && is_shareable(to_world)) {
+                add_instance(node.index, to_world, use);
+            } else {
+                add_primitives(node.index, *placement, scene_.triangles);
             }
         }
+    }
+
+    void add_primitives(int node, const Placement& placement, std::vector<Triangle>& triangles) {
+        const int mesh = model_.nodes[node].mesh;
+        VertexBlocks blocks;
+        for (std::size_t i = 0; i < model_.meshes[mesh].primitives.size(); ++i) {
+            add_primitive(node, mesh, i, placement, blocks, triangles);
+        }
+        check_total(scene_.triangles.size() + shared_triangles_.size(), max_triangles, "triangles", file_);
+    }
+
+    void add_instance(int node, const glm::dmat4& to_world, MeshUse& use) {
+        const auto mesh_node = std::uint32_t(scene_.mesh_nodes.size() - 1);
+        if (!use.shared) {
+            use.shared = std::uint32_t(scene_.meshes.size());
+            scene_.meshes.push_back({std::uint32_t(shared_triangles_.size()), mesh_node});
+            add_primitives(node, *Placement::of(glm::dmat4(1.0)), shared_triangles_);
+            SceneBox& box = boxes_.emplace_back(SceneBox::nothing());
+            for (std::size_t i = scene_.meshes.back().first_triangle; i < shared_triangles_.size(); ++i) {
+                for (const std::uint32_t v : shared_triangles_[i].vertex) box.grow(scene_.positions[v]);
+            }
+        }
+        const SceneBox& box = boxes_[*use.shared];
+        if (box.is_empty()) return;  // all of its triangles were dropped
+        for (int corner = 0; corner < 8; ++corner) {
+            const auto side = [&](int axis) { return (corner >> axis & 1 ? box.high : box.low)[axis]; };
+            check_position(glm::dvec3(to_world * glm::dvec4(side(0), side(1), side(2), 1.0)), node);
+        }
+        scene_.instances.push_back({glm::dmat4x3(to_world), *use.shared, mesh_node});
     }
 
     /// First vertex in the scene of what primitives of one mesh instance share: the same attributes.
     using VertexBlocks = std::map<std::array<const void*, 6>, std::size_t>;
 
-    void add_primitive(int node, int mesh, std::size_t index, const Placement& placement, VertexBlocks& blocks) {
+    void add_primitive(int node, int mesh, std::size_t index, const Placement& placement, VertexBlocks& blocks,
+                       std::vector<Triangle>& triangles) {
         const tinygltf::Primitive& source = model_.meshes[mesh].primitives[index];
         if (!has_triangles(source)) {
             warnings_.add(
@@ -145,9 +231,9 @@ private:
         const std::uint32_t material = material_index(source);
         const LocalPrimitive& local = primitives_.read(node, mesh, index, vertex_needs(scene_.materials[material]));
         if (local.normals) {
-            add_smooth(local, placement, material, first_vertex(local, node, placement, blocks));
+            add_smooth(local, placement, material, first_vertex(local, node, placement, blocks), triangles);
         } else {
-            add_flat(local, node, placement, material);
+            add_flat(local, node, placement, material, triangles);
         }
     }
 
@@ -158,15 +244,17 @@ private:
         return std::uint32_t(file_materials_);
     }
 
+    void check_position(const glm::dvec3& p, int node) const {
+        if (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= max_coordinate && is_finite(p)) return;
+        bad_scene(file_.name, fmt::format("the world position of a vertex of nodes[{}]", node), to_text(p),
+                  fmt::format("the limit is {}", max_coordinate));
+    }
+
     /// Vertex i of a primitive in the world, its position checked, without its normal.
     Vertex placed(const LocalPrimitive& local, std::size_t i, int node, const Placement& placement) const {
         Vertex vertex;
         vertex.position = placement.point((*local.positions)[i]);
-        const glm::dvec3& p = vertex.position;
-        if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= max_coordinate) || !is_finite(p)) {
-            bad_scene(file_.name, fmt::format("the world position of a vertex of nodes[{}]", node), to_text(p),
-                      fmt::format("the limit is {}", max_coordinate));
-        }
+        check_position(vertex.position, node);
         for (std::size_t set = 0; set < 2; ++set) {
             if (local.uv[set]) vertex.uv[set] = glm::vec2((*local.uv[set])[i]);
         }
@@ -228,9 +316,9 @@ private:
         return corners;
     }
 
-    void add_smooth(const LocalPrimitive& local, const Placement& placement, std::uint32_t material,
-                    std::size_t first) {
-        reserve_more(scene_.triangles, local.triangles.size());
+    void add_smooth(const LocalPrimitive& local, const Placement& placement, std::uint32_t material, std::size_t first,
+                    std::vector<Triangle>& triangles) {
+        reserve_more(triangles, local.triangles.size());
         for (const CornerIndices& corners : local.triangles) {
             Triangle triangle{wound(corners, placement), material};
             std::array<glm::dvec3, 3> p;
@@ -245,14 +333,15 @@ private:
                 triangle.vertex[k] = add_copy(triangle.vertex[k], geometric);
                 warnings_.add("no direction, the triangle's own is used", "a normal");
             }
-            scene_.triangles.push_back(triangle);
+            triangles.push_back(triangle);
         }
     }
 
     /// Three vertices a triangle with its own normal, as glTF 2.0, section 3.7.2.1, asks for where NORMAL is missing.
-    void add_flat(const LocalPrimitive& local, int node, const Placement& placement, std::uint32_t material) {
+    void add_flat(const LocalPrimitive& local, int node, const Placement& placement, std::uint32_t material,
+                  std::vector<Triangle>& triangles) {
         make_room(3 * local.triangles.size());
-        reserve_more(scene_.triangles, local.triangles.size());
+        reserve_more(triangles, local.triangles.size());
         for (const CornerIndices& corners : local.triangles) {
             Triangle triangle{wound(corners, placement), material};
             std::array<Vertex, 3> vertices;
@@ -264,7 +353,7 @@ private:
                 vertices[k].normal = geometric;
                 triangle.vertex[k] = add_vertex(vertices[k]);
             }
-            scene_.triangles.push_back(triangle);
+            triangles.push_back(triangle);
         }
     }
 
@@ -272,9 +361,13 @@ private:
     const tinygltf::Model& model_;
     GltfAccessors& accessors_;
     PrimitiveReader primitives_;
+    const Sharing sharing_;
     Scene& scene_;
     Warnings& warnings_;
     const std::size_t file_materials_;
+    std::map<MeshKey, MeshUse> uses_;
+    std::vector<Triangle> shared_triangles_;  // of all shared meshes
+    std::vector<SceneBox> boxes_;             // [Scene::meshes] in their own space
     std::size_t degenerate_triangles_ = 0;
 };
 
@@ -296,8 +389,8 @@ std::vector<bool> used_materials(const GltfFile& file, const tinygltf::Model& mo
 }
 
 void add_meshes(const GltfFile& file, const tinygltf::Model& model, GltfAccessors& accessors,
-                const std::vector<PlacedNode>& nodes, Scene& scene, Warnings& warnings) {
-    MeshAdder(file, model, accessors, scene, warnings).add(nodes);
+                const std::vector<PlacedNode>& nodes, Sharing sharing, Scene& scene, Warnings& warnings) {
+    MeshAdder(file, model, accessors, sharing, scene, warnings).add(nodes);
 }
 
 }  // namespace vkcppm

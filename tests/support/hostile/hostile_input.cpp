@@ -37,8 +37,8 @@ std::string bad_line(const Error& error, const std::filesystem::path& file) {
     return "";
 }
 
-std::string read_scene(const std::filesystem::path& file) {
-    Scene scene = load_gltf(file);
+std::string read_scene(const std::filesystem::path& file, Sharing sharing) {
+    Scene scene = load_gltf(file, sharing);
     if (const std::string text = unsoundness(scene); !text.empty()) return "unsound: " + text;
     const auto is_line = [](const std::string& line) { return line.find('\n') == std::string::npos; };
     if (!std::ranges::all_of(diagnose(scene), is_line)) return "a diagnosis of two lines";
@@ -48,6 +48,11 @@ std::string read_scene(const std::filesystem::path& file) {
         return "the measures of the flat scene are not finite";
     }
     return "";
+}
+
+/// With copies, mostly, and with instances wherever there can be some.
+std::string read_scene(const std::filesystem::path& file) {
+    return read_scene(file, Sharing::by_cost) + read_scene(file, Sharing::always);
 }
 
 std::string read_environment_of(const std::filesystem::path& file) {

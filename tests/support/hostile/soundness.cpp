@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
+#include "scene/instances.h"
+
 namespace vkcppm::test {
 namespace {
 
@@ -43,6 +45,29 @@ std::string unsound_triangles(const Scene& scene) {
     return "";
 }
 
+std::string unsound_instances(const Scene& scene) {
+    std::uint32_t last = 0;
+    for (const SharedMesh& mesh : scene.meshes) {
+        if (mesh.first_triangle < last || mesh.first_triangle > scene.triangles.size()) return "the order of meshes";
+        if (mesh.node >= scene.mesh_nodes.size()) return "the node of a mesh";
+        last = mesh.first_triangle;
+    }
+    for (std::uint32_t i = world_triangles(scene).last; i < scene.triangles.size(); ++i) {
+        const Material& material = scene.materials[scene.triangles[i].material];
+        if (material.emission != glm::vec3(0.0f)) return fmt::format("triangle {}, which emits, is shared", i);
+    }
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        if (instance.mesh >= scene.meshes.size()) return fmt::format("the mesh of instance {}", i);
+        if (instance.node >= scene.mesh_nodes.size()) return fmt::format("the node of instance {}", i);
+        if (!is_shareable(glm::dmat4(instance.to_world))) return fmt::format("the transform of instance {}", i);
+        for (int column = 0; column < 4; ++column) {
+            if (!is_finite(instance.to_world[column])) return fmt::format("the transform of instance {}", i);
+        }
+    }
+    return "";
+}
+
 std::string unsound_material(const Scene& scene, const Material& m) {
     for (const auto* texture :
          {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.emissive_texture,
@@ -74,6 +99,7 @@ std::string unsoundness(const Scene& scene) {
         return fmt::format("{} normals of {} vertices", scene.normals.size(), vertices);
     }
     if (std::string text = unsound_triangles(scene); !text.empty()) return text;
+    if (std::string text = unsound_instances(scene); !text.empty()) return text;
     for (const auto& uv : scene.uv) {
         const auto is_sound = [](const glm::vec2& v) { return is_finite({v, 0.0f}); };
         if (std::string text = unsound_vertices("uv", uv, vertices, is_sound); !text.empty()) return text;

@@ -78,6 +78,10 @@ TwoWays render_two_ways(const Scene& scene, const Settings& settings, std::uint3
     return {render_photons(scene, settings, parts), oracle::path_trace(scene, oracle_settings(settings, samples))};
 }
 
+TwoScenes render_two_scenes(const Scene& one, const Scene& other, const Settings& settings, std::uint32_t parts) {
+    return {render_photons(one, settings, parts), render_photons(other, settings, parts)};
+}
+
 TwoWays render_two_ways_extrapolated(const Scene& scene, Settings settings, std::uint32_t parts,
                                      std::uint32_t samples) {
     TwoWays pictures = render_two_ways(scene, settings, parts, samples);
@@ -171,6 +175,23 @@ BlockComparison expect_blocks_agree(const oracle::PathTracing& picture, const or
                                     const BlockSettings& settings, const std::string& ways) {
     const BlockComparison blocks = compare_blocks(picture, paths, settings);
     expect_agreement(blocks, ways, picture.mean, paths.mean);
+    return blocks;
+}
+
+BlockComparison expect_blocks_agree(const TwoScenes& pictures, const BlockSettings& settings, const std::string& ways) {
+    const auto of_parts = [&](const Pictures& parts) {
+        return [&](std::uint32_t x0, std::uint32_t y0, int c) { return moments(parts, x0, y0, settings.side, c); };
+    };
+    const double n = double(pictures.one.size());
+    const BlockComparison blocks =
+        compare(pictures.one.front().extent, settings, of_parts(pictures.one), of_parts(pictures.other),
+                [n](double difference, double allowed, double v1, double v2) {
+                    const double beyond = std::abs(difference) - allowed;
+                    if (beyond <= 0.0) return 1.0;
+                    const double freedom = (n - 1.0) * (v1 + v2) * (v1 + v2) / (v1 * v1 + v2 * v2);
+                    return 2.0 * cdf(complement(boost::math::students_t(freedom), beyond / std::sqrt(v1 + v2)));
+                });
+    expect_agreement(blocks, ways, mean_of(pictures.one), mean_of(pictures.other));
     return blocks;
 }
 

@@ -36,6 +36,13 @@ TwoWays render_two_ways(const Scene& scene, const Settings& settings, std::uint3
 /// half the radii, less one with those of the settings. The bias at edges is linear in the radius, most of it cancels.
 TwoWays render_two_ways_extrapolated(const Scene& scene, Settings settings, std::uint32_t parts, std::uint32_t samples);
 
+/// The photons of two scenes that should look the same.
+struct TwoScenes {
+    Pictures one;
+    Pictures other;
+};
+TwoScenes render_two_scenes(const Scene& one, const Scene& other, const Settings& settings, std::uint32_t parts);
+
 struct BlockSettings {
     std::uint32_t side = 8;  // pixels of a block either way
     double level = 0.001;    // of the whole picture, Sidak-corrected over blocks and channels
@@ -54,6 +61,9 @@ BlockComparison compare_blocks(const TwoWays& pictures, const BlockSettings& set
 
 /// Expects that no block differs, or shows the table and leaves the pictures (the means of both ways).
 BlockComparison expect_blocks_agree(const TwoWays& pictures, const BlockSettings& settings);
+
+/// The same of two scenes. `ways`: what stands over what.
+BlockComparison expect_blocks_agree(const TwoScenes& pictures, const BlockSettings& settings, const std::string& ways);
 
 /// The same of two pictures that know their standard errors, from many samples: by the normal distribution.
 BlockComparison compare_blocks(const oracle::PathTracing& picture, const oracle::PathTracing& paths,

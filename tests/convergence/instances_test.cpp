@@ -1,0 +1,56 @@
+// Rooms whose ball and pane are instances of shared meshes, in mirrored and sheared spaces of their own, against the
+// same rooms of triangles in world space: block means agree by Welch's test. Random numbers are the same in both, so
+// that most paths are, too, and what differs is seen far below the noise of a picture.
+
+#include <cmath>
+#include <string>
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include "core/metrics.h"
+#include "scene/instances.h"
+#include "support/scenes/instanced.h"
+#include "support/scenes/rooms.h"
+#include "support/statistics/blocks.h"
+
+namespace vkcppm::test {
+namespace {
+
+/// Turned, stretched, sheared and mirrored, and far from its origin.
+glm::dmat4 crooked(double size) {
+    glm::dmat4 m = glm::translate(glm::dmat4(1.0), glm::dvec3(0.7, 0.4, 0.9));
+    m = glm::rotate(m, 1.1, glm::normalize(glm::dvec3(1.0, 2.0, -0.5)));
+    m = glm::scale(m, size * glm::dvec3(-1.0, 0.6, 1.7));
+    glm::dmat4 shear(1.0);
+    shear[1][0] = 0.8;
+    return m * shear * glm::translate(glm::dmat4(1.0), glm::dvec3(3.0, -1.0, 2.0));
+}
+
+class InstancedRooms : public testing::TestWithParam<Case> {};
+
+TEST_P(InstancedRooms, LookLikeTheirCopies) {
+    Scene room = make_room();
+    Settings settings;
+    settings.size = Extent{32, 32};
+    settings.iterations = 12;
+    settings.photons = 16384;
+    GetParam().change(room, settings);
+    Scene instanced = room;
+    for (const std::uint32_t material : {2u, 3u}) {  // the ball, the pane
+        const bool used =
+            std::ranges::any_of(room.triangles, [=](const Triangle& t) { return t.material == material; });
+        if (!used || room.materials[material].emission != glm::vec3(0.0f)) continue;
+        instanced = shared(instanced, material, crooked(material == 2 ? 1e-3 : 50.0));
+    }
+    if (instanced.instances.empty()) GTEST_SKIP() << "both emit";
+    const TwoScenes pictures = render_two_scenes(instanced, room, settings, 12);
+    expect_blocks_agree(pictures, {.side = 4, .bias = 0.005}, "instances over copies");
+}
+
+std::string name_of(const testing::TestParamInfo<Case>& info) { return info.param.name; }
+
+INSTANTIATE_TEST_SUITE_P(Features, InstancedRooms, testing::ValuesIn(material_cases()), name_of);
+
+}  // namespace
+}  // namespace vkcppm::test
