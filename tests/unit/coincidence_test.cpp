@@ -44,6 +44,12 @@ TEST(Coincidence, WhatHasNoNormalIsLeftOut) {
     EXPECT_EQ(distinct_triangles(corners, std::vector(5, diffuse)), (std::vector<std::uint32_t>{3, 4}));
 }
 
+TEST(Coincidence, TwoSidesOfAMeshWhoseInstancesAreKnownLessWellAreFurtherApart) {
+    std::vector<Corners> sides = {in_plane(0.1f, 1.0f, true), in_plane(0.1f, 1.0f, false)};
+    part_touching_faces(sides, std::vector{diffuse, other}, 1e-3f);
+    EXPECT_NEAR(sides[0][0].y - sides[1][0].y, 8e-3f, 1e-4f);
+}
+
 /// How far each triangle moves along y, in its rounding errors.
 std::vector<float> shifts(const std::vector<Corners>& corners, const std::vector<FaceTraits>& faces) {
     std::vector<Corners> moved = corners;

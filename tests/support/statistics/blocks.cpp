@@ -179,18 +179,24 @@ BlockComparison expect_blocks_agree(const oracle::PathTracing& picture, const or
 }
 
 BlockComparison expect_blocks_agree(const TwoScenes& pictures, const BlockSettings& settings, const std::string& ways) {
-    const auto of_parts = [&](const Pictures& parts) {
-        return [&](std::uint32_t x0, std::uint32_t y0, int c) { return moments(parts, x0, y0, settings.side, c); };
-    };
+    Pictures differences = pictures.one;
+    for (std::size_t part = 0; part < differences.size(); ++part) {
+        Image& image = differences[part];
+        for (std::size_t i = 0; i < image.rgb.size(); ++i) image.rgb[i] -= pictures.other[part].rgb[i];
+    }
     const double n = double(pictures.one.size());
-    const BlockComparison blocks =
-        compare(pictures.one.front().extent, settings, of_parts(pictures.one), of_parts(pictures.other),
-                [n](double difference, double allowed, double v1, double v2) {
-                    const double beyond = std::abs(difference) - allowed;
-                    if (beyond <= 0.0) return 1.0;
-                    const double freedom = (n - 1.0) * (v1 + v2) * (v1 + v2) / (v1 * v1 + v2 * v2);
-                    return 2.0 * cdf(complement(boost::math::students_t(freedom), beyond / std::sqrt(v1 + v2)));
-                });
+    const BlockComparison blocks = compare(
+        pictures.one.front().extent, settings,
+        [&](std::uint32_t x0, std::uint32_t y0, int c) {
+            const double mean = moments(pictures.one, x0, y0, settings.side, c).first;
+            return std::pair(mean, moments(differences, x0, y0, settings.side, c).second);
+        },
+        [&](std::uint32_t x0, std::uint32_t y0, int c) {
+            return std::pair(moments(pictures.other, x0, y0, settings.side, c).first, 0.0);
+        },
+        [n](double difference, double allowed, double v1, double v2) {
+            return p_value(difference, allowed, v1, v2, n);
+        });
     expect_agreement(blocks, ways, mean_of(pictures.one), mean_of(pictures.other));
     return blocks;
 }

@@ -36,7 +36,7 @@ TwoWays render_two_ways(const Scene& scene, const Settings& settings, std::uint3
 /// half the radii, less one with those of the settings. The bias at edges is linear in the radius, most of it cancels.
 TwoWays render_two_ways_extrapolated(const Scene& scene, Settings settings, std::uint32_t parts, std::uint32_t samples);
 
-/// The photons of two scenes that should look the same.
+/// The photons of two scenes that should look the same, by the same random numbers.
 struct TwoScenes {
     Pictures one;
     Pictures other;
@@ -62,7 +62,8 @@ BlockComparison compare_blocks(const TwoWays& pictures, const BlockSettings& set
 /// Expects that no block differs, or shows the table and leaves the pictures (the means of both ways).
 BlockComparison expect_blocks_agree(const TwoWays& pictures, const BlockSettings& settings);
 
-/// The same of two scenes. `ways`: what stands over what.
+/// The same of two scenes, part by part (paired t-test): what both parts of a pair have of noise does not count.
+/// `ways`: what stands over what.
 BlockComparison expect_blocks_agree(const TwoScenes& pictures, const BlockSettings& settings, const std::string& ways);
 
 /// The same of two pictures that know their standard errors, from many samples: by the normal distribution.
