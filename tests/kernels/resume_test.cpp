@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
 #include "render/estimators.h"
@@ -14,6 +15,7 @@
 #include "support/files/evidence.h"
 #include "support/names.h"
 #include "support/pass_report.h"
+#include "support/scenes/instanced.h"
 #include "support/scenes/rooms.h"
 #include "support/scenes/shapes.h"
 
@@ -95,6 +97,29 @@ TEST_F(Determinism, SmallPhotonBuffersGiveTheSameBits) {
         cut.integrator.fill(b);
         EXPECT_EQ(a.stored_photons, b.stored_photons);
     }
+}
+
+// What a glossy hit is remembered by includes the instance.
+TEST_F(Determinism, SmallStepBudgetsGiveTheSameBitsInInstances) {
+    Scene scene = make_room();
+    constexpr std::uint32_t ball = 2, pane = 3;
+    scene.materials[ball].metallic = 1.0f;
+    scene.materials[ball].roughness = 0.3f;
+    const glm::dmat4 small = glm::scale(glm::dmat4(1.0), glm::dvec3(-0.01, 0.02, 0.03));
+    scene = shared(shared(scene, ball, small), pane, glm::scale(glm::dmat4(1.0), glm::dvec3(3.0)));
+    const Settings settings = settings_of("cppm");
+    Rig whole(scene, settings);
+    ASSERT_EQ(whole.flat.instances.size(), 2u);
+    whole.integrator.run(iterations);
+    Rig cut(scene, settings);
+    gpu::Params params = cut.integrator.params();
+    params.step_budget = 150;
+    cut.integrator.set_params(params);
+    cut.integrator.run(iterations);
+    for (const Pass pass : {Pass::eye, Pass::photon, Pass::gather}) {
+        EXPECT_GT(calls(cut, pass), calls(whole, pass)) << "the pass was not cut";
+    }
+    expect_same_picture(cut.integrator.resolve(), whole.integrator.resolve());
 }
 
 // Where eye paths ask for lights, the ray to one is cut too, also behind a path that has ended.
