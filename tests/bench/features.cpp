@@ -16,6 +16,7 @@
 #include "flat/features.h"
 #include "support/pass_report.h"
 #include "support/device/rig.h"
+#include "support/scenes/instanced.h"
 #include "support/scenes/shapes.h"
 
 using namespace vkcppm;
@@ -125,6 +126,13 @@ std::vector<Case> cases() {
         {"environment", FEATURE_ENVIRONMENT,
          [](Scene& s, Settings&) {
              s.environment = Environment{{64, 32}, std::vector<glm::vec3>(64 * 32, glm::vec3(0.5f))};
+         }},
+        {"instances", FEATURE_INSTANCES,
+         [](Scene& s, Settings&) {
+             std::vector<int> triangles(s.materials.size());
+             for (const Triangle& triangle : s.triangles) ++triangles[triangle.material];
+             const auto most = std::ranges::max_element(triangles);
+             s = shared(s, std::uint32_t(most - triangles.begin()), glm::dmat4(1.0));
          }},
         {"further channels", FEATURE_AOVS, [](Scene&, Settings& settings) { settings.aovs = true; }},
     };
