@@ -80,7 +80,8 @@ BLOCK(FIRST + 23, LightRayBlock, LightRay, light_rays)
 BLOCK(FIRST + 24, EyeStateBlock, EyeState, eye_states)
 BLOCK(FIRST + 25, SearchStateBlock, SearchState, search_states)
 BLOCK(FIRST + 26, AskedLightBlock, AskedLight, asked_lights)
-BLOCK(FIRST + 27, InstanceBlock, Instance, instance_records)
+// Not behind the others: the next row is read as texels alone.
+BLOCK(GRID(BINDING_NUMBER), InstanceBlock, Instance, instance_records)
 BLOCK(FIRST + 28, InstanceNodeBlock, InstanceNode, instance_nodes)
 
 void main() {

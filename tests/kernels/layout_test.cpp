@@ -81,8 +81,11 @@ template <typename S> S bumped(S value) {
     return value;
 }
 
-/// Of the storage buffers that stand together, the one that block `index` of layout.comp is bound to.
-Binding block(std::uint32_t index) { return Binding(std::uint32_t(Binding::hit_position) + index); }
+/// The storage buffer that block `index` of layout.comp is bound to.
+Binding block(std::uint32_t index) {
+    const auto binding = Binding(std::uint32_t(Binding::hit_position) + index);
+    return binding == Binding::instances ? Binding::grid : binding;  // that one is read as texels alone
+}
 
 class Layout : public GpuTest {
 protected:

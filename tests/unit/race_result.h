@@ -20,6 +20,7 @@ inline RaceResult made_up_race(const std::vector<std::string>& names) {
         run.entrant.settings.estimator = names[e].substr(0, names[e].find(':'));
         run.entrant.settings.size = Extent{8, 6};
         run.entrant.settings.iterations = 64;
+        run.entrant.settings.photons = 65536;  // counted by who runs one
         for (std::size_t s = 0; s < result.seeds.size(); ++s) {
             Curve curve;
             for (std::uint64_t n = 1; n <= 64; n *= 2) {
