@@ -49,8 +49,10 @@ void bump(inout AskedGroup a[ASKED_GROUPS]) { for (int i = 0; i < ASKED_GROUPS; 
         MEMBERS                                    \
         value_out = value;                         \
     }
+// Two, of one work group, which no compiler knows: unrolled the kernel takes twice as long to compile.
+#define ELEMENTS (gl_NumWorkGroups.x + 1u)
 #define ROUND_TRIP(Struct, values, MEMBERS) \
-    for (uint e = 0u; e < 2u; ++e) BUMP(Struct, values[e], values[e + 2u], MEMBERS)
+    for (uint e = 0u; e < ELEMENTS; ++e) BUMP(Struct, values[e], values[e + 2u], MEMBERS)
 
 #define FIRST HIT_POSITION(BINDING_NUMBER)
 BLOCK(FIRST + 0, BvhNodeBlock, BvhNode, bvh_nodes)
