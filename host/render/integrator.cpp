@@ -41,10 +41,6 @@ void set_test(gpu::Params& params, const EstimatorRow& estimator, const Settings
     }
 }
 
-std::uint32_t features_of(const FlatScene& scene, const Settings& settings) {
-    return bits_of(scene.features) | bits_of(features_of(settings));
-}
-
 /// What the scene, the camera and the number of light paths decide of them.
 gpu::Params first_params(const SceneOnDevice& on_device, const Camera& camera, const Settings& settings,
                          std::uint32_t group) {
@@ -61,14 +57,14 @@ Integrator::Integrator(const SceneOnDevice& on_device, const Camera& camera, con
     : device_(on_device.device()),
       forms_(forms.empty() ? forms_for(device_.info()) : std::move(forms)),
       params_(first_params(on_device, camera, settings, forms_.front().group)),
-      counts_(counts_of(params_, settings, device_, features_of(on_device.flat(), settings), most_band_pixels)),
+      counts_(counts_of(params_, settings, device_, feature_bits(on_device.flat(), settings), most_band_pixels)),
       bands_(counts_.bands),
       bindings_(device_, bands_.count()),
       commands_(device_, bindings_),
       buffers_(device_, bindings_) {
     const FlatScene& scene = on_device.flat();
     const EstimatorRow& estimator = find_estimator(settings.estimator);
-    const std::uint32_t features = features_of(scene, settings);
+    const std::uint32_t features = feature_bits(scene, settings);
     scale_ = scene.frame.scale;
     set_test(params_, estimator, settings);
     set_params(scene, settings);

@@ -17,6 +17,7 @@ constexpr double fewest = 10, most = 19;  // logarithms to base 2
 }  // namespace
 
 std::uint32_t light_paths(const SceneOnDevice& scene, const Camera& camera, const Settings& settings) {
+    if (settings.photons) return *settings.photons;
     if (settings.direct != direct_sampled || scene.flat().lights.empty()) return usual_light_paths;
     Settings counted = settings;
     counted.size = Extent{1, 1};

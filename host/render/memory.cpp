@@ -96,7 +96,7 @@ Counts counts_of(const gpu::Params& params, const Settings& settings, const Devi
 }
 
 std::vector<MemoryReport> memory_needed(const FlatScene& scene, const Settings& settings, const Device& device) {
-    const std::uint32_t features = bits_of(scene.features) | bits_of(features_of(settings));
+    const std::uint32_t features = feature_bits(scene, settings);
     const Counts counts = counts_before(settings, device, features, !scene.lights.empty());
     std::map<Binding, std::uint64_t> bytes;
     for (const BufferRow& row : buffer_rows()) bytes[row.binding] = bytes_of(row, counts);

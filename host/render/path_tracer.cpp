@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint32_t most_rounds = 64;  // of a submission
 
 Specialization specialize(const FlatScene& scene, const Settings& settings, PathTracer::Light light) {
-    std::uint32_t features = bits_of(scene.features) | bits_of(features_of(settings));
+    std::uint32_t features = feature_bits(scene, settings);
     features &= ~(FEATURE_AOVS | FEATURE_SPLIT | FEATURE_DIRECT);
     if (light == PathTracer::Light::split) features |= FEATURE_SPLIT;
     return scene_specialization(scene, features);

@@ -56,7 +56,7 @@ Rendering render(const Scene& scene, const Settings& wanted, Device& device, con
     const Settings& settings = result.settings;
     check_memory(scene, settings, device);
     const SceneOnDevice on_device(device, flatten(scene));
-    if (!settings.photons) result.settings.photons = light_paths(on_device, camera_of(settings, scene), settings);
+    result.settings.photons = light_paths(on_device, camera_of(settings, scene), settings);
     Integrator integrator(on_device, camera_of(settings, scene), settings);
     if (checkpointing.from) {
         result.report = checkpointing.from->report;

@@ -8,6 +8,8 @@
 #include <fmt/ranges.h>
 
 #include "core/error.h"
+#include "flat/features.h"
+#include "flat/flat_scene.h"
 #include "render/estimators.h"
 #include "render/settings_rows.h"
 #include "shared/types.h"
@@ -120,6 +122,10 @@ std::vector<Feature> features_of(const Settings& settings) {
     if (!settings.caustics && settings.direct == direct_sampled)
         features.push_back(make_feature(FEATURE_DIRECT, fmt::format("--direct {}", direct_sampled)));
     return features;
+}
+
+std::uint32_t feature_bits(const FlatScene& scene, const Settings& settings) {
+    return bits_of(scene.features) | bits_of(features_of(settings));
 }
 
 const Camera& camera_of(const Settings& settings, const Scene& scene) {

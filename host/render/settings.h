@@ -1,6 +1,7 @@
 #pragma once
 // What a render is asked to do.
 
+#include <cstdint>
 #include <vector>
 
 #include "flat/feature.h"
@@ -8,6 +9,8 @@
 #include "scene/scene.h"
 
 namespace vkcppm {
+
+struct FlatScene;
 
 /// Throws Error(usage) where a setting is out of range, with its name, value and limit.
 /// `scene` resolves what depends on it: the size of the picture and the camera.
@@ -18,5 +21,8 @@ const Camera& camera_of(const Settings& settings, const Scene& scene);
 
 /// What the settings ask of the kernels.
 std::vector<Feature> features_of(const Settings& settings);
+
+/// FEATURE_* of the scene and of what the settings ask for.
+std::uint32_t feature_bits(const FlatScene& scene, const Settings& settings);
 
 }  // namespace vkcppm

@@ -137,8 +137,7 @@ RaceResult run_race(const Scene& scene, const RaceSettings& race, const Image& r
     const SceneOnDevice on_device(device, flatten(scene));
     // One number for all, of the first.
     const Settings& first = race.entrants.front().settings;
-    const std::uint32_t photons =
-        first.photons ? *first.photons : light_paths(on_device, camera_of(first, scene), first);
+    const std::uint32_t photons = light_paths(on_device, camera_of(first, scene), first);
     for (RaceRun& run : result.runs) run.entrant.settings.photons = photons;
     const double begin = wall_now();
     for (std::uint32_t s = 0; s < race.seeds && !result.interrupted; ++s) {

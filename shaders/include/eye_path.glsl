@@ -119,18 +119,17 @@ void store(EyePath path) {
 // The path has found light.
 void find(inout EyePath path, vec3 light, uint layer) {
     path.at.emission += light;
-    if (HAS_AOVS && layer == LAYER_DIRECT) path.at.layer[LAYER_DIRECT] += light;
-    if (HAS_AOVS && layer == LAYER_CAUSTIC) path.at.layer[LAYER_CAUSTIC] += light;
+    if (HAS_AOVS && layer < LAYERS) path.at.layer[layer] += light;
 }
 
-// That of light which the path meets: it has come, from there to the surface seen, by what the path has gone.
+// The layer of light that the path meets: it has come, from there to the surface seen, by what the path has gone.
 uint layer_of_met(uint flags) {
     if ((flags & PATH_STRAIGHT) != 0u) return LAYER_DIRECT;
     if ((flags & PATH_ROUGH_TWICE) != 0u) return LAYER_REST;
     return (flags & PATH_CAUSTIC) != 0u ? LAYER_CAUSTIC : LAYER_DIRECT;
 }
 
-// That of light which arrives at a vertex.
+// The layer of light that arrives at a vertex.
 uint layer_of_asked(uint flags) { return (flags & PATH_STRAIGHT) != 0u ? LAYER_DIRECT : LAYER_REST; }
 
 // The weight of light that a ray meets and that could be asked for with `density`: the balance heuristic. followed: the
@@ -284,9 +283,6 @@ void go_on_with_light_ray(inout EyePath path, uint found, Hit hit) {
 }
 
 // ---- choose, follow, gather ----
-
-// True where the lobe goes straight on through a pane, which rays to lights pass too.
-bool passes_pane(Bsdf bsdf, uint lobe) { return !HAS_SPLIT && lobe == LOBE_TRANSMISSION && is_pane(bsdf); }
 
 // A lobe, or LOBE_DIFFUSE to gather, by the probabilities of v.lobes.
 uint choose(inout EyePath path, Vertex v) {

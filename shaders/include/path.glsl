@@ -29,6 +29,9 @@ uint pass_boundary(uint flags, Bsdf bsdf, uint lobe, Surface surface) {
     return (flags & ((1u << PATH_MEDIUM_SHIFT) - 1u)) | medium << PATH_MEDIUM_SHIFT;
 }
 
+// True where the lobe goes straight on through a pane: the path has met nothing, for rays to lights pass it too.
+bool passes_pane(Bsdf bsdf, uint lobe) { return !HAS_SPLIT && lobe == LOBE_TRANSMISSION && is_pane(bsdf); }
+
 // The flags of an eye path after a lobe of that density (DELTA or not) was followed.
 uint leave_lobe(uint flags, float density) {
     if (density != DELTA) return flags & ~(PATH_STRAIGHT | PATH_CAUSTIC);

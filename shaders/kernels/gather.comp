@@ -1,8 +1,8 @@
 #version 460
 // One invocation a pixel: sums the photons in its disc with the radius in force before this iteration's photons were
-// looked at, and bins them for the estimator. Reads hits, pixels, grid, sorted photons and their
-// flux, in glossy scenes hit_surface and the scene; writes gathered, tally or moments, cursors, aovs where
-// asked for.
+// looked at, and bins them for the estimator. Reads hits, pixels, grid, sorted photons and their flux, in glossy scenes
+// hit_surface and the scene; writes gathered, tally or moments, cursors, and where asked for aovs, of which layers wait
+// in eye_paths between rounds.
 // O(photons in the cells that the disc touches). Fails by running out of steps: goes on next round.
 // In glossy scenes every photon is weighed by the BSDF for its direction, made from the surface of the hit again.
 // Acceptance: |y - x| < R strictly (appm looks further for its derivative), and the photon's geometric normal agrees

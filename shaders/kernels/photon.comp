@@ -83,10 +83,8 @@ bool scatter(inout PathState state, Bsdf bsdf, Surface surface, vec4 u) {
     float density;
     vec3 weight = sample_lobe(lobe, bsdf, surface, u.xy, false, state.direction, density);
     state.power *= weight * inverse_probability;
-    // What goes straight on through a pane has met nothing.
-    bool passes = !HAS_SPLIT && lobe == LOBE_TRANSMISSION && is_pane(bsdf);
     bool lit_near = (state.flags & PATH_DIRECT) != 0u && state.near > 0.0;
-    if (!passes) state.flags &= ~PATH_DIRECT;
+    if (!passes_pane(bsdf, lobe)) state.flags &= ~PATH_DIRECT;
     if (density != DELTA) state.flags &= ~PATH_STRAIGHT;
     if (HAS_AOVS && density != DELTA) state.flags |= PATH_SCATTERED;
     state.flags = split_photon(state.flags, density, lit_near);

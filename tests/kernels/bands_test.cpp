@@ -32,18 +32,12 @@ Settings settings_of(const std::string& estimator) {
     return settings;
 }
 
-Report report_of(const Rig& rig) {
-    Report report;
-    rig.integrator.fill(report);
-    return report;
-}
-
 void expect_same(Rig& whole, Rig& cut, const std::string& what) {
-    EXPECT_EQ(cut.integrator.save(), whole.integrator.save()) << what;
+    expect_same_state(cut, whole, what);
     EXPECT_EQ(cut.integrator.aovs(), whole.integrator.aovs()) << what;
     EXPECT_EQ(cut.integrator.radii(), whole.integrator.radii()) << what;
     expect_same_picture(cut.integrator.resolve(), whole.integrator.resolve(), what);
-    EXPECT_EQ(report_of(cut).stored_photons, report_of(whole).stored_photons) << what;
+    EXPECT_EQ(cut.report().stored_photons, whole.report().stored_photons) << what;
 }
 
 class Bands : public GpuTest, public testing::WithParamInterface<std::string> {};
@@ -54,7 +48,7 @@ TEST_P(Bands, GiveTheSameBits) {
     whole.integrator.run(iterations);
     cut.integrator.run(iterations);
     expect_same(whole, cut, "three bands");
-    EXPECT_EQ(report_of(cut).rays, report_of(whole).rays);
+    EXPECT_EQ(cut.report().rays, whole.report().rays);
 }
 
 TEST_P(Bands, GiveTheSameBitsWithSmallStepBudgets) {
@@ -77,7 +71,7 @@ TEST_P(Bands, GoOnFromACheckpointOfAnotherNumberOfThem) {
         Rig second(room(), settings_of(GetParam()), plain_device(), after);
         whole.integrator.run(iterations);
         first.integrator.run(3);
-        second.integrator.restore(report_of(first), first.integrator.save());
+        second.integrator.restore(first.report(), first.integrator.save());
         second.integrator.run(iterations - 3);
         expect_same(whole, second, what);
     }

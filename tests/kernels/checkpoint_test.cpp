@@ -30,20 +30,6 @@ Settings settings_of(const std::string& estimator) {
     return settings;
 }
 
-Report report_of(const Rig& rig) {
-    Report report;
-    rig.integrator.fill(report);
-    return report;
-}
-
-void expect_same_bits(const Rig& a, const Rig& b, const std::string& what) {
-    const std::vector<std::byte> left = a.integrator.save(), right = b.integrator.save();
-    ASSERT_EQ(left.size(), right.size()) << what;
-    std::size_t differing = 0;
-    for (std::size_t i = 0; i < left.size(); ++i) differing += left[i] != right[i] ? 1 : 0;
-    EXPECT_EQ(differing, 0u) << "of " << left.size() << " bytes of state, " << what;
-}
-
 class Checkpoints : public GpuTest, public testing::WithParamInterface<std::string> {};
 
 // The grid is planned before iterations 0, 1, 2, 4, ... and multiples of 16 from what iterations before have left: put
@@ -59,10 +45,10 @@ TEST_P(Checkpoints, GoOnWithTheSameBits) {
     std::vector<Kept> kept;
     for (const std::uint32_t stop : {5u, 16u, 23u}) {
         whole.integrator.run(stop - whole.integrator.completed());
-        kept.push_back({report_of(whole), whole.integrator.save()});
+        kept.push_back({whole.report(), whole.integrator.save()});
     }
     whole.integrator.run(last - whole.integrator.completed());
-    const Report expected = report_of(whole);
+    const Report expected = whole.report();
     // The first time on buffers of zeros, then on what the time before has left in them.
     for (const auto& [report, state] : kept) {
         const std::string what = "put down after " + std::to_string(report.iterations) +
@@ -70,10 +56,10 @@ TEST_P(Checkpoints, GoOnWithTheSameBits) {
         resumed.integrator.restore(report, state);
         EXPECT_EQ(resumed.integrator.completed(), report.iterations);
         resumed.integrator.run(last - resumed.integrator.completed());
-        expect_same_bits(whole, resumed, what);
+        expect_same_state(whole, resumed, what);
         expect_same_picture(resumed.integrator.resolve(), whole.integrator.resolve(), what);
         EXPECT_EQ(whole.integrator.aovs(), resumed.integrator.aovs()) << what;
-        const Report got = report_of(resumed);
+        const Report got = resumed.report();
         EXPECT_EQ(got.iterations, expected.iterations) << what;
         EXPECT_EQ(got.stored_photons, expected.stored_photons) << what;
         EXPECT_EQ(got.emitted_paths, expected.emitted_paths) << what;
@@ -95,7 +81,7 @@ TEST_F(CheckpointState, OfAGridOfSeveralLevelsGoesOnWithTheSameBits) {
     whole.integrator.run(2);
     ASSERT_GE(whole.integrator.buffer(Binding::grid).download_value<gpu::Grid>().levels, 2u);
     const std::vector<std::byte> state = whole.integrator.save();
-    const Report report = report_of(whole);
+    const Report report = whole.report();
     const auto hashes = [](Rig& rig) {
         std::vector<std::uint64_t> all;
         for (int i = 0; i < 3; ++i) {
@@ -117,7 +103,7 @@ TEST_F(CheckpointState, OfAnotherSizeOrWithAnImpossibleGridIsRefused) {
     for (const std::size_t size : {std::size_t(0), good.size() - 1, good.size() + 1}) {
         std::vector<std::byte> bad = good;
         bad.resize(size);
-        const auto error = thrown_by([&] { rig.integrator.restore(report_of(rig), bad); });
+        const auto error = thrown_by([&] { rig.integrator.restore(rig.report(), bad); });
         ASSERT_TRUE(error) << size << " bytes were taken";
         EXPECT_EQ(error->code(), ExitCode::bad_scene);
         EXPECT_NE(std::string(error->what()).find(std::to_string(size)), std::string::npos) << error->what();
@@ -139,12 +125,12 @@ TEST_F(CheckpointState, OfAnotherSizeOrWithAnImpossibleGridIsRefused) {
     for (const gpu::Grid& wrong : {wide, hashed, empty, flat, deep, shifted}) {
         std::vector<std::byte> bad = good;
         std::memcpy(bad.data() + grid_at, &wrong, sizeof(wrong));
-        const auto error = thrown_by([&] { rig.integrator.restore(report_of(rig), bad); });
+        const auto error = thrown_by([&] { rig.integrator.restore(rig.report(), bad); });
         ASSERT_TRUE(error) << wrong.dims[0].x << " x " << wrong.dims[0].y << " x " << wrong.dims[0].z << ", "
                            << wrong.entries << ", " << wrong.levels << " levels";
         EXPECT_EQ(error->code(), ExitCode::bad_scene);
     }
-    rig.integrator.restore(report_of(rig), good);
+    rig.integrator.restore(rig.report(), good);
 }
 
 class PassHashes : public GpuTest {
@@ -183,10 +169,10 @@ TEST_F(PassHashes, DoNotDependOnHowTheWorkIsCut) {
 
     Rig plain(room(), settings_of("cppm"), plain_device());
     plain.integrator.run(5);
-    expect_same_bits(whole, plain, "with hashes and without");
+    expect_same_state(whole, plain, "with hashes and without");
 
     Rig resumed(room(), settings_of("cppm"), plain_device());
-    resumed.integrator.restore(report_of(whole), whole.integrator.save());
+    resumed.integrator.restore(whole.report(), whole.integrator.save());
     EXPECT_EQ(first_difference(run(whole, 3), run(resumed, 3)), "") << "of iterations 6 to 8, after a checkpoint";
 }
 

@@ -24,8 +24,7 @@ class Memory : public GpuTest {};
 
 void expect_told(const Scene& scene, const Settings& settings, std::uint64_t most_band_pixels = 0) {
     Rig rig(scene, settings, plain_device(), most_band_pixels);
-    Report report;
-    rig.integrator.fill(report);
+    const Report report = rig.report();
     const std::vector<MemoryReport> told = memory_needed(rig.flat, rig.settings, plain_device());
     ASSERT_EQ(told.size(), report.memory.size());
     for (std::size_t i = 0; i < told.size(); ++i) {

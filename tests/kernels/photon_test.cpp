@@ -93,8 +93,7 @@ TEST_F(Photons, LieOnDiffuseSurfacesOnTheSideTheyCameFrom) {
         }
     }
     EXPECT_GT(count, 2048u);
-    Report report;
-    rig.integrator.fill(report);
+    const Report report = rig.report();
     EXPECT_EQ(count, report.stored_photons);
 }
 

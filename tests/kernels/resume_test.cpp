@@ -41,11 +41,7 @@ std::size_t differences(const Image& a, const Image& b) {
     return count;
 }
 
-std::uint64_t calls(const Rig& rig, Pass pass) {
-    Report report;
-    rig.integrator.fill(report);
-    return report_of(report.passes, pass).calls;
-}
+std::uint64_t calls(const Rig& rig, Pass pass) { return report_of(rig.report().passes, pass).calls; }
 
 class Resume : public GpuTest, public testing::WithParamInterface<std::string> {};
 
@@ -92,9 +88,7 @@ TEST_F(Determinism, SmallPhotonBuffersGiveTheSameBits) {
         EXPECT_GT(cut.integrator.params().photon_capacity, capacity) << "the buffer was never too small";
         expect_same_picture(cut.integrator.resolve(), expected,
                             fmt::format("capacity {}, step budget {}", capacity, budget));
-        Report a, b;
-        whole.integrator.fill(a);
-        cut.integrator.fill(b);
+        const Report a = whole.report(), b = cut.report();
         EXPECT_EQ(a.stored_photons, b.stored_photons);
     }
 }

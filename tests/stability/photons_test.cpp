@@ -102,8 +102,7 @@ TEST_F(HardPhotons, NoneIsStored) {
     add_camera(scene, {0, 2, 2}, {0, 0, 0}, 0.8);
     Rig rig(scene, settings_of({16, 16}, 1024), plain_device());
     rig.integrator.run(50);
-    Report report;
-    rig.integrator.fill(report);
+    const Report report = rig.report();
     EXPECT_EQ(report.stored_photons, 0u);
     double light = 0.0;
     for (const glm::vec3& rgb : rig.integrator.resolve().rgb) {

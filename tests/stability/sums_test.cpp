@@ -283,8 +283,7 @@ TEST_F(Sums, CountersNearTheirEnd) {
     status.rays = 0xfffffff0u;
     rig.integrator.buffer(Binding::status).upload_value(status);
     rig.integrator.run(20);
-    Report report;
-    rig.integrator.fill(report);
+    const Report report = rig.report();
     expect_error("rays lost past 2^32", report.rays >= 4294967296u && report.rays < 4295067296u ? 0.0 : 1.0, 0.0);
 
     // Beyond 2^30 - 1 iterations random numbers would repeat.

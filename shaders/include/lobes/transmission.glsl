@@ -12,10 +12,15 @@ vec3 transmission_normal(Surface surface) { return surface.normal; }
 // True of a thin wall that lets light go straight on, as if it met nothing (include/direct.glsl).
 bool is_pane(Bsdf b) { return HAS_THIN && b.thin && b.glass > 0.0 && !is_rough(b.alpha); }
 
+// What a facet of a wall lets through, at these cosines of wo to the wall's normal and to the facet's.
+vec3 wall_transmittance(Bsdf b, float wo_n, float wo_h) {
+    return b.transmission * below_clearcoat(b, wo_n) * facet_transmittance(b, wo_h);
+}
+
 // What goes straight on through a pane.
 vec3 pane_transmittance(Bsdf b, Surface surface, vec3 wo) {
-    float transmittance = facet_transmittance(b, min(1.0, dot(surface.normal, wo)));
-    return b.transmission * (transmittance * below_clearcoat(b, coat_cosine(surface, wo)));
+    float cosine = min(1.0, dot(surface.normal, wo));
+    return wall_transmittance(b, cosine, cosine);
 }
 
 // The facets of rough glass turn from n to wo: some transmit where n would reflect all.
@@ -28,9 +33,8 @@ float transmission_weight(Bsdf b, Surface surface, vec3 wo) {
 vec3 transmission_sample(Bsdf b, Surface surface, Facet facet, vec2 u, bool radiance, inout vec3 direction,
                          inout float density) {
     vec3 wo = -direction;
-    vec3 weight = b.transmission * below_clearcoat(b, facet.wo_n);
     if (b.thin) {
-        weight *= facet_transmittance(b, facet.wo_h);
+        vec3 weight = wall_transmittance(b, facet.wo_n, facet.wo_h);
         if (facet.rough) {
             vec3 mirrored = reflect(direction, facet.h);
             float wi_n = dot(mirrored, facet.n);
@@ -41,6 +45,7 @@ vec3 transmission_sample(Bsdf b, Surface surface, Facet facet, vec2 u, bool radi
         }
         return weight;
     }
+    vec3 weight = b.transmission * below_clearcoat(b, facet.wo_n);
     if (b.eta == 1.0) facet = smooth_facet(facet.n, wo);  // no facet bends it
     float cosine_t;
     float reflectance = fresnel_dielectric(facet.wo_h, b.eta, cosine_t);

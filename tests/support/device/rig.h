@@ -1,7 +1,9 @@
 #pragma once
 // A scene on the device of the tests, ready to run iterations or single kernels of it.
 
+#include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -43,6 +45,11 @@ struct Rig {
         for (std::uint32_t p = 0; p < params.photons; ++p) paths.push_back({slots[p], offsets[p + 1] - offsets[p]});
         return paths;
     }
+    Report report() const {
+        Report told;
+        integrator.fill(told);
+        return told;
+    }
     gpu::Status status() { return integrator.buffer(Binding::status).download_value<gpu::Status>(); }
     std::uint64_t pixels() const { return settings.size->pixels(); }
 
@@ -52,6 +59,15 @@ struct Rig {
     SceneOnDevice on_device;
     Integrator integrator;
 };
+
+/// All that an iteration leaves to the next is the same, byte for byte.
+inline void expect_same_state(const Rig& a, const Rig& b, const std::string& what) {
+    const std::vector<std::byte> left = a.integrator.save(), right = b.integrator.save();
+    ASSERT_EQ(left.size(), right.size()) << what;
+    std::size_t differing = 0;
+    for (std::size_t i = 0; i < left.size(); ++i) differing += left[i] != right[i] ? 1 : 0;
+    EXPECT_EQ(differing, 0u) << "of " << left.size() << " bytes of state, " << what;
+}
 
 /// Small discs and large ones, which stay as they are. Before iteration 1, so that the grid of iteration 2 is planned
 /// for them and has several levels.
