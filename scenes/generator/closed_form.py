@@ -23,7 +23,8 @@ def furnace():
     document.add_camera(camera)
     expected = Expectation(
         "L = Le / (1 - rho), Le = (0.35, 0.3, 0.3), rho = (0.3, 0.5, 0.7), in every pixel",
-        camera, lambda direction: [e / (1.0 - r) for e, r in zip(radiance, rho)], iterations=128, photons=16384)
+        camera, lambda direction: [e / (1.0 - r) for e, r in zip(radiance, rho)],
+        sampled=(64, 16384), gathered=(64, 16384))
     quadrants(expected, camera)
     return document, expected
 
@@ -44,7 +45,7 @@ def point_plane():
     expected = Expectation(
         "L = rho/pi I cos(theta) / r^2, theta and r at the plane's point from the light at (-0.8, 2.5, 0.5), "
         "I = (10, 20, 45) W/sr, rho = (0.8, 0.6, 0.4), plane y = 0",
-        camera, radiance, iterations=192, photons=131072)
+        camera, radiance, sampled=(16, 1024), gathered=(80, 131072))
     quadrants(expected, camera)
     return document, expected
 
@@ -71,7 +72,7 @@ def spot_plane():
         "L = rho/pi I s cos(theta) / r^2 with s = clamp((cos(d) - cos(outer)) / (cos(inner) - cos(outer)), 0, 1)^2, "
         "d the angle off the axis from (1, 4, 0.6) to (0.1, 0, 0), inner 12 and outer 35 degrees, "
         "I = (40, 30, 20) W/sr, rho = (0.5, 0.7, 0.9), plane y = 0",
-        camera, radiance, iterations=192, photons=65536)
+        camera, radiance, sampled=(16, 1024), gathered=(64, 65536))
     expected.add_region("core", (24, 40), (24, 40))
     expected.add_region("falloff left", (12, 24), (20, 44))
     expected.add_region("falloff above", (20, 44), (12, 24))
@@ -96,7 +97,7 @@ def directional_plane():
     expected = Expectation(
         "L = rho/pi E cos(theta), E = (2, 3, 4) W/m^2 across the light that travels along (0.6, -0.7, -0.4), "
         "rho = (0.9, 0.5, 0.2), plane y = 0",
-        camera, radiance, iterations=160, photons=131072)
+        camera, radiance, sampled=(16, 1024), gathered=(40, 131072))
     quadrants(expected, camera)
     return document, expected
 
@@ -119,7 +120,7 @@ def square_light():
     expected = Expectation(
         "L = rho Le F, F the form factor from the plane's point to the 1 m square at height 2 m around (-0.6, 2, 0.4) "
         "(Lambert's polygon formula), Le = (4, 5, 6), rho = (0.5, 0.6, 0.7), plane y = 0",
-        camera, radiance, iterations=192, photons=65536)
+        camera, radiance, sampled=(16, 1024), gathered=(192, 65536))
     quadrants(expected, camera)
     return document, expected
 
@@ -143,7 +144,7 @@ def mirror():
     expected = Expectation(
         "in the mirror L = F Le with F = b + (1 - b)(1 - cos(theta))^5, theta from the normal (0, 1, 0), "
         "b = (0.9, 0.5, 0.2), Le = (0.6, 0.8, 1); on the wall L = Le",
-        camera, radiance, iterations=64, photons=1024)
+        camera, radiance, sampled=(16, 1024), gathered=(16, 1024))
     expected.add_region("wall", (16, 48), (2, 14))
     expected.add_region("mirror, grazing", (24, 40), (31, 34))
     expected.add_region("mirror, middle", (16, 48), (36, 40))
@@ -184,7 +185,7 @@ def _slab(about, attenuation, formula):
     expected = Expectation(
         formula + ", F the exact Fresnel reflectance of unpolarised light at the pixel's angle, ior 1.5, "
         "Lb = (1, 1, 0.4) behind, Lf = (0.2, 1, 1.6) on the camera's side",
-        camera, radiance, iterations=256, photons=1024)
+        camera, radiance, sampled=(160, 1024), gathered=(96, 1024))
     expected.add_region("centre", (32, 64), (32, 64))
     expected.add_region("left", (0, 32), (32, 64))
     expected.add_region("lower right", (64, 96), (64, 96))
@@ -231,7 +232,7 @@ def _slab_floor(about, attenuation, formula):
     expected = Expectation(
         formula + ", F the exact Fresnel reflectance at 60 degrees, ior 1.5, E = (4, 5, 6) W/m^2 across the light, "
         "rho = (0.8, 0.6, 0.4), floor y = 0",
-        camera, radiance, iterations=192, photons=65536)
+        camera, radiance, sampled=(128, 65536), gathered=(192, 65536))
     expected.add_region("floor", (0, 64), (0, 64))
     return document, expected
 

@@ -9,12 +9,16 @@ _WEIGHTS = (5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0)
 
 
 class Expectation:
-    """radiance(direction) -> rgb is the closed form for a ray that leaves the camera in that direction."""
+    """radiance(direction) -> rgb is the closed form for a ray that leaves the camera in that direction.
 
-    def __init__(self, formula, camera, radiance, iterations, photons, tolerance=0.005):
+    sampled, gathered: iterations and light paths an iteration by which --direct it is rendered.
+    """
+
+    def __init__(self, formula, camera, radiance, sampled, gathered, tolerance=0.005):
         self._camera, self._radiance = camera, radiance
-        self._settings = {"formula": formula, "size": list(camera.size), "iterations": iterations, "photons": photons,
-                          "tolerance": tolerance}
+        budgets = {way: {"iterations": iterations, "photons": photons}
+                   for way, (iterations, photons) in (("sampled", sampled), ("gathered", gathered))}
+        self._settings = {"formula": formula, "size": list(camera.size), **budgets, "tolerance": tolerance}
         self._regions = []
 
     def add_region(self, name, x, y):

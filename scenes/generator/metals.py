@@ -42,7 +42,7 @@ def focus():
         "cos(theta) = 2 f / sqrt(4 f^2 + r^2), r the distance from the axis at which the mirror y = r^2 / (4 f) was "
         "met by light that arrives at the pixel's point: 2 f (sqrt(s^2 + d^2) - s) / d, d its distance from the axis "
         "in the plane y = f + s; f = 1 m, s = 0.5 m, E = (3, 4, 5) W/m^2 along -y, b = (0.9, 0.6, 0.3), rho = 0.4",
-        camera, radiance, iterations=256, photons=131072)
+        camera, radiance, sampled=(128, 131072), gathered=(256, 131072))
     expected.add_region("nearer the focus", (32, 64), (0, 64))
     expected.add_region("further from it", (0, 32), (0, 64))
     return document, expected
@@ -88,7 +88,7 @@ def rough_metal():
         "L = Le (b A + (1 - b) B), A the mean of G2/G1 and B that of G2/G1 (1 - |wo.h|)^5 over the normals h of GGX "
         "that are visible from the pixel (height-correlated Smith, single scattering), integrated in double; alpha "
         "0.25 left and 0.64 right, b = (0.9, 0.5, 0.2), Le = (0.6, 0.8, 1)",
-        camera, radiance, iterations=256, photons=131072)
+        camera, radiance, sampled=(96, 131072), gathered=(256, 131072))
     for name, x in (("alpha 0.25", (2, 30)), ("alpha 0.64", (34, 62))):
         expected.add_region(f"{name}, slanted", x, (6, 32))
         expected.add_region(f"{name}, steep", x, (32, 62))

@@ -42,8 +42,8 @@ TEST_P(ClosedForm, MeanRadianceOfEveryRegion) {
     EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.front();
     Settings settings;
     settings.size = Extent{expected["size"][0], expected["size"][1]};
-    settings.iterations = expected["iterations"];
-    settings.photons = expected["photons"].get<std::uint32_t>();
+    settings.iterations = expected[direct]["iterations"];
+    settings.photons = expected[direct]["photons"].get<std::uint32_t>();
     settings.direct = direct;
     const Rendering rendering = render(scene, settings, device(), [](const Progress&) { return true; });
     EXPECT_TRUE(rendering.warnings.empty()) << rendering.warnings.front();
