@@ -218,7 +218,7 @@ std::vector<Touching> touching_faces(std::span<const Corners> corners, std::span
 
 }  // namespace
 
-void part_touching_faces(std::span<Corners> corners, std::span<const FaceTraits> faces, float least_error) {
+bool part_touching_faces(std::span<Corners> corners, std::span<const FaceTraits> faces, float least_error) {
     const auto error = [&](std::uint32_t i) { return std::max(least_error, position_error(corners[i])); };
     std::unordered_map<std::uint32_t, float> shifts;  // towards the front
     const auto move = [&](std::uint32_t i, std::uint32_t other, float side) {
@@ -239,13 +239,17 @@ void part_touching_faces(std::span<Corners> corners, std::span<const FaceTraits>
             }
         }
     });
+    bool solids_touch = false;
     for (const Touching& pair : touching_faces(corners, faces)) {
-        move(pair.movable, pair.other, faces[pair.movable].is_solid ? -1.0f : 1.0f);
+        const bool is_solid = faces[pair.movable].is_solid, both = is_solid && faces[pair.other].is_solid;
+        solids_touch = solids_touch || both;
+        move(pair.movable, pair.other, is_solid && !both ? -1.0f : 1.0f);
     }
     for (const auto& [i, shift] : shifts) {
         const glm::vec3 offset = glm::vec3(unit_normal(corners[i]) * double(shift));
         for (glm::vec3& corner : corners[i]) corner += offset;
     }
+    return solids_touch;
 }
 
 }  // namespace vkcppm

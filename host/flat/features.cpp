@@ -75,6 +75,8 @@ template <> std::string reason_of<FEATURE_TEXTURED_LIGHTS>(const Asked& asked) {
     return textured > 0 ? fmt::format("{} parts of emitters with a texture or alpha", textured) : "";
 }
 
+template <> std::string reason_of<FEATURE_NESTED>(const Asked& asked) { return asked.flat.nested; }
+
 template <> std::string reason_of<FEATURE_POINT_LIGHTS>(const Asked& asked) {
     return reason_of(asked, PunctualLight::Kind::point);
 }

@@ -2,6 +2,7 @@
 // A Scene as the kernels read it: leaf-ordered triangles, BVH, surfaces, an alias table of lights, all in the frame.
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -11,6 +12,7 @@
 #include "flat/bvh.h"
 #include "flat/feature.h"
 #include "flat/frame.h"
+#include "flat/solids.h"
 #include "scene/scene.h"
 #include "shared/types.h"
 
@@ -41,6 +43,8 @@ struct FlatScene {
     Extent environment_size;             // of the map, cut where its pixels were coarse
     std::vector<glm::vec4> environment;  // [pixels] radiance, keep of its alias table
     std::vector<glm::uvec2> environment_alias;  // [pixels] its other entry; environment_area, as bits
+    std::string nested;                         // solids that touch, overlap or hold one another, in words; or empty
+    std::vector<SolidFace> solids;              // where there are such: their faces, those of instances apart
     std::vector<Feature> features;              // what the scene asks of the kernels
     double area = 0.0;                          // of all triangles, in each instance, frame units squared
     double radius = 0.0;                        // of the bounding sphere about the origin, frame units

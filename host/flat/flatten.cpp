@@ -53,6 +53,7 @@ SceneFrame make_frame(const SceneBox& box) {
 struct Placed {
     std::vector<std::uint32_t> source;  // into the triangles of the scene
     std::vector<Corners> corners;
+    bool solids_touch = false;
 };
 
 /// Which corner should come first. Barycentrics are well conditioned where the edges at the first corner are not nearly
@@ -77,7 +78,7 @@ Placed place_triangles(const Scene& scene, const TriangleRange& range, const Sce
         const Triangle& triangle = scene.triangles[range.first + i];
         for (int c = 0; c < 3; ++c) corners[i][c] = glm::vec3(frame.point(scene.positions[triangle.vertex[c]]));
         const SurfaceTraits& t = traits[triangle.material];
-        faces[i] = {triangle.material, t.emits, t.has(Lobe::transmission) && !t.thin};
+        faces[i] = {triangle.material, t.emits, is_solid(t)};
     });
     placed.source = distinct_triangles(corners, faces);
     const std::size_t kept = placed.source.size();
@@ -87,7 +88,7 @@ Placed place_triangles(const Scene& scene, const TriangleRange& range, const Sce
     }
     corners.resize(kept);
     faces.resize(kept);
-    part_touching_faces(corners, faces, least_error);
+    placed.solids_touch = part_touching_faces(corners, faces, least_error);
     for (std::uint32_t& source : placed.source) source += range.first;
     return placed;
 }
@@ -292,6 +293,7 @@ void add_geometry(const Scene& scene, const std::vector<SurfaceTraits>& traits, 
     }
     const std::vector<std::uint32_t> kept = distinct_instances(scene, placements);
 
+    bool touch = false;
     Extents extents;
     {
         const std::vector<BvhBox> in_frame = boxes_in_frame(boxes, kept, flat.frame);
@@ -302,6 +304,7 @@ void add_geometry(const Scene& scene, const std::vector<SurfaceTraits>& traits, 
             }
         }
         const Placed placed = place_triangles(scene, world, flat.frame, traits);
+        touch = placed.solids_touch;
         flat.bvh = build_bvh(placed.corners, in_frame);
         extents.hold(add_placed(scene, placed, flat));
         flat.area = area_of(flat.triangles);
@@ -326,6 +329,7 @@ void add_geometry(const Scene& scene, const std::vector<SurfaceTraits>& traits, 
     for (std::uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
         const Placed placed = place_triangles(scene, triangles_of_mesh(scene, mesh), spaces[mesh], traits,
                                               float(std::min(1e-2, least_error[mesh])));
+        touch = touch || placed.solids_touch;
         const std::size_t first = flat.triangles.size();
         // Where rays begin that enter the mesh (enter_instance) is rounded as much.
         const double padding = bvh_padding * (1.0 + 2e-6 * magnified[mesh]);
@@ -337,6 +341,7 @@ void add_geometry(const Scene& scene, const std::vector<SurfaceTraits>& traits, 
         flat.area += areas[mesh] * area_of(std::span(flat.triangles).subspan(first));
     }
     flat.bvh.stack += stack;
+    flat.nested = touch ? "solids that touch" : nested_solids(scene, traits);
     for (std::size_t k = 0; k < kept.size(); ++k) {
         const MeshToScene& placement = placements[kept[k]];
         flat.instances.push_back(placement.to_scene());
@@ -345,6 +350,18 @@ void add_geometry(const Scene& scene, const std::vector<SurfaceTraits>& traits, 
         placement.enter_by(entry, roots[scene.instances[kept[k]].mesh]);
         entry.index = node.exponents;
         node = std::bit_cast<gpu::BvhNode>(entry);
+    }
+}
+
+/// Which of nested solids counts, and what is needed to tell in which of them the eye is.
+void add_solids(const Scene& scene, const std::vector<SurfaceTraits>& traits, FlatScene& flat) {
+    const std::vector<std::uint32_t> priorities = priorities_of(scene, traits);
+    for (std::size_t i = 0; i < priorities.size(); ++i) flat.materials[i].priority = priorities[i];
+    for (std::uint32_t i = 0; i < world_triangles(scene).last; ++i) {
+        const Triangle& triangle = scene.triangles[i];
+        if (!is_solid(traits[triangle.material])) continue;
+        SolidFace& face = flat.solids.emplace_back(SolidFace{{}, triangle.material, priorities[triangle.material]});
+        for (int c = 0; c < 3; ++c) face.corners[c] = flat.frame.point(scene.positions[triangle.vertex[c]]);
     }
 }
 
@@ -413,6 +430,7 @@ FlatScene flatten(const Scene& scene) {
     for (std::size_t i = 0; i < traits.size(); ++i) {
         flat.materials.push_back(surface_of(scene.materials[i], traits[i], flat.frame.scale, textures));
     }
+    if (!flat.nested.empty()) add_solids(scene, traits, flat);
     flat.textures = textures.lookups();
     flat.images = textures.take_texels();
     add_lights(scene, flat);

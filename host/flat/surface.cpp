@@ -112,6 +112,7 @@ SurfaceTraits traits_of(const Material& m, float least_alpha) {
     SurfaceTraits t;
     t.unlit = m.unlit;
     t.alpha = is_partly_there(m, least_alpha);
+    t.culled = !m.double_sided && !is_glass(m);
     t.emits = m.emission != black;
     const auto textures = textures_of(m);
     t.textured =
@@ -124,6 +125,8 @@ SurfaceTraits traits_of(const Material& m, float least_alpha) {
     t.coat = has_coat(m);
     t.thin = is_glass(m) && !is_solid_glass(m);
     t.absorbs = is_solid_glass(m) && std::isfinite(m.attenuation_distance) && m.attenuation_color != white;
+    t.specular_glass = is_glass(m) && (m.specular != 1.0f || m.specular_color != white || m.specular_texture ||
+                                       m.specular_color_texture);
     t.disperses = is_solid_glass(m) && m.dispersion > 0.0f && m.ior > 1.0f;
     t.normal_map = m.normal_texture || (t.has(Lobe::clearcoat) && m.clearcoat_normal_texture);
     return t;
@@ -148,8 +151,13 @@ gpu::SurfaceMaterial surface_of(const Material& m, const SurfaceTraits& traits, 
     surface.specular_color = m.specular_color;
     surface.opacity = m.opacity;
     if (traits.absorbs) {
-        const glm::dvec3 color = glm::max(glm::dvec3(m.attenuation_color), glm::dvec3(1e-30));  // black is very dark
-        surface.absorption = glm::vec3(-glm::log(color) / (double(m.attenuation_distance) * scale));
+        for (int channel = 0; channel < 3; ++channel) {
+            // Of what is 0 after any distance nothing is left after the least; not infinite, for the distance may be 0.
+            constexpr double most = 1e30;
+            const double color = m.attenuation_color[channel];
+            const double distance = double(m.attenuation_distance) * scale;
+            surface.absorption[channel] = float(color > 0.0 ? std::min(most, -std::log(color) / distance) : most);
+        }
     }
     if (traits.disperses) {
         // Abbe number V = (n_d - 1) / (n_F - n_C), lines d, F, C of the spectrum; micrometres.
@@ -169,6 +177,7 @@ gpu::SurfaceMaterial surface_of(const Material& m, const SurfaceTraits& traits, 
     if (traits.alpha) surface.flags |= m.alpha == Material::Alpha::mask ? SURFACE_MASK : SURFACE_BLEND;
     if (traits.unlit) surface.flags |= SURFACE_UNLIT;
     if (traits.textured) surface.flags |= SURFACE_TEXTURED;
+    if (traits.culled) surface.flags |= SURFACE_CULLED;
     return surface;
 }
 
@@ -189,6 +198,8 @@ std::string describe_material(const Material& m, const SurfaceTraits& t) {
     if (t.has(Lobe::transmission)) {
         std::string glass = fmt::format("{} of ior {:g}, tint {}, {}", t.thin ? "thin-walled glass" : "solid glass",
                                         m.ior, text(m.base_color), roughness(m.roughness));
+        if (m.specular < 1.0f) glass += fmt::format(", reflecting {:g} of Fresnel's share", m.specular);
+        if (m.specular_color != white) glass += fmt::format(", in colour {}", text(m.specular_color));
         if (m.transmission < 1.0f) glass += fmt::format(", {:g} of the surface", m.transmission);
         if (t.absorbs) glass += fmt::format(", {} after {:g} m", text(m.attenuation_color), m.attenuation_distance);
         if (t.disperses) glass += fmt::format(", Abbe number {:g}", 20.0f / m.dispersion);

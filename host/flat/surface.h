@@ -39,7 +39,9 @@ struct SurfaceTraits {
     bool thin = false;     // transmits without a volume
     bool absorbs = false;  // transmits with absorption in its volume
     bool disperses = false;
-    bool alpha = false;  // is partly not there
+    bool specular_glass = false;  // KHR_materials_specular has a say on what glass reflects
+    bool culled = false;          // the camera does not see its back
+    bool alpha = false;           // is partly not there
     bool unlit = false;
     bool textured = false;
     bool normal_map = false;

@@ -417,6 +417,25 @@ std::vector<float> Integrator::radii() const {
     return radii;
 }
 
+double Integrator::disc_width() const {
+    const std::uint32_t band = bands_.count() - 1;
+    const std::uint64_t count = bands_.size(band);
+    const auto states = buffers_.at(Binding::pixels, band).download<gpu::PixelState>(count);
+    const auto positions = buffers_.at(Binding::hit_position, band).download<gpu::HitPosition>(count);
+    const auto emissions = buffers_.at(Binding::hit_emission, band).download<gpu::HitEmission>(count);
+    std::vector<double> widths;
+    for (std::uint64_t i = 0; i < count; ++i) {
+        if ((positions[i].state & HIT_DIFFUSE) == 0 || !(emissions[i].footprint > 0.0f)) continue;
+        const double pixel = double(emissions[i].footprint) * std::sqrt(std::numbers::pi);  // its side
+        const double width = 2.0 * std::sqrt(double(states[i].radius2)) / (pixel * params_.height);
+        widths.push_back(states[i].seeded != 0 ? width : 0.0);
+    }
+    if (widths.empty()) return 0.0;
+    const auto middle = widths.begin() + std::ptrdiff_t(widths.size() / 2);
+    std::ranges::nth_element(widths, middle);
+    return *middle;
+}
+
 std::map<std::string, std::vector<float>> Integrator::aovs() const {
     const auto states = of_pixels<gpu::PixelState>(Binding::pixels);
     const auto sums = of_pixels<gpu::Aovs>(Binding::aovs);

@@ -67,6 +67,10 @@ public:
     /// [P] m: the radius of every pixel's disc now; 0 where none of its eye paths has gathered yet.
     std::vector<float> radii() const;
 
+    /// How wide discs are that photons gave, in heights of the picture at their depth: the median over the pixels of
+    /// the last band that have gathered in the last iteration; 0 where photons gave most of them none.
+    double disc_width() const;
+
     /// Totals so far: passes, iterations, paths, photons, rays, device memory.
     void fill(Report& report) const;
 

@@ -127,6 +127,15 @@ Rendering render(const Scene& scene, const Settings& wanted, Device& device, con
     if (settings.aovs) result.aovs = integrator.aovs();
     integrator.fill(result.report);
     result.report.peak_memory_bytes = peak_memory();
+    // Discs as wide as that hold no shadow of what the picture shows.
+    constexpr double most_of_picture = 0.5;
+    if (const double width = integrator.disc_width(); width > most_of_picture) {
+        result.warnings.push_back(fmt::format(
+            "{} photons an iteration do not suffice: half of their discs are wider than {:.2g} times the "
+            "height of the picture, and light that they bring is blurred as much: more --photons, {}or a "
+            "scene that ends nearer to what is seen",
+            *result.settings.photons, width, settings.direct == direct_gathered ? "--direct sampled, " : ""));
+    }
     if (integrator.invalid() > 0) {
         result.warnings.push_back(
             fmt::format("{} contributions were not finite and were dropped", integrator.invalid()));

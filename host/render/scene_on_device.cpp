@@ -98,6 +98,9 @@ gpu::Params scene_params(const Device& device, const FlatScene& scene, const Cam
     params.bounds_high = scene.high;
     params.bounds_radius = float(bounds_radius(scene));
     params.max_depth = settings.max_depth;
+    const Media media = media_at(scene.solids, scene.frame.point(glm::dvec3(camera.to_world[3])));
+    params.eye_medium = media.first;
+    params.eye_media = media.others;
     params.light_count = std::uint32_t(scene.lights.size());
     if (split && splits_near_lamps(scene)) params.near_lights = float(near_lamp * scene.radius);
     params.light_power = float(scene.light_power);

@@ -141,7 +141,7 @@ def sponza():
     for name, tint, spots in (("red drape", (0.6, 0.04, 0.04), ((-1, 3), (1, 2), (-1, 0))),
                               ("blue drape", (0.05, 0.1, 0.42), ((-1, 2), (1, 1))),
                               ("green drape", (0.08, 0.32, 0.07), ((-1, 1), (1, 3), (1, 0)))):
-        document.add_mesh(name, cloth, document.lambert(name, tint),
+        document.add_mesh(name, cloth, document.lambert(name, tint, double_sided=True),
                           [place((side * (half_x + 0.05), 0.75, centers[bay]), yaw=90.0) for side, bay in spots])
     vase = lathe([(0.0, 0.0), (0.22, 0.0), (0.24, 0.05), (0.2, 0.1), (0.34, 0.4), (0.36, 0.6), (0.26, 0.85),
                   (0.31, 0.95), (0.28, 0.95), (0.23, 0.85), (0.2, 0.7), (0.0, 0.7)], 24)

@@ -50,6 +50,8 @@ struct Bsdf {
     float clearcoat;
     float clearcoat_alpha;
     bool thin;              // transmission passes straight on
+    float specular;         // of glass: strength and colour of what it reflects
+    vec3 specular_color;
 };
 
 const float CLEARCOAT_R0 = 0.04;
@@ -64,20 +66,36 @@ float clearcoat_fresnel(Bsdf b, float cosine) {
 
 float below_clearcoat(Bsdf b, float cosine) { return 1.0 - clearcoat_fresnel(b, cosine); }
 
+// Reflectance of a facet of glass, and the cosine beyond. KHR_materials_specular scales it at normal incidence by
+// colour and strength and at grazing by strength alone, which Schlick's (1 - cos)^5 tells apart, at the cosine in the
+// thinner medium from either side. Total reflection stays total: there is nowhere else to go.
+vec3 glass_reflectance(Bsdf b, float cosine, out float cosine_t) {
+    vec3 r = vec3(fresnel_dielectric(cosine, b.eta, cosine_t));
+    if (HAS_SPECULAR_GLASS && cosine_t > 0.0 && b.eta != 1.0) {
+        float grazing = schlick_power(min(cosine, cosine_t));
+        r = b.specular * clamp(grazing + b.specular_color * (r - grazing), vec3(0.0), vec3(1.0));
+    }
+    return r;
+}
+
 // Reflectance of a facet of the reflection lobe.
 vec3 facet_reflectance(Bsdf b, float cosine) {
     vec3 r = b.r0 + (b.r90 - b.r0) * schlick_power(cosine);
     if (HAS_TRANSMISSION) {
         float cosine_t;
-        r += b.glass * fresnel_dielectric(cosine, b.eta, cosine_t);
+        r += b.glass * glass_reflectance(b, cosine, cosine_t);
     }
     return r;
 }
 
-// What a facet transmits, without its tint: transmission holds the share of glass.
+// What a facet transmits of all channels, without its tint: transmission holds the share of glass. cosine_t: beyond.
+float facet_transmittance(Bsdf b, float cosine, out float cosine_t) {
+    return 1.0 - largest(glass_reflectance(b, cosine, cosine_t));
+}
+
 float facet_transmittance(Bsdf b, float cosine) {
     float cosine_t;
-    return 1.0 - fresnel_dielectric(cosine, b.eta, cosine_t);
+    return facet_transmittance(b, cosine, cosine_t);
 }
 
 // What the coat leaves to the diffuse base.
@@ -110,6 +128,12 @@ Bsdf bsdf_of(SurfaceMaterial material, float ior, bool front) {
         b.coat0 = largest(coat);
         b.coat90 = material.specular;
     }
+    b.specular = material.specular;
+    b.specular_color = vec3(1.0);
+    if (HAS_SPECULAR_GLASS) {
+        float root = (1.0 - ior) / (1.0 + ior);
+        b.specular_color = min(material.specular_color, vec3(1.0 / max(1e-30, root * root)));
+    }
     b.clearcoat = material.clearcoat;
     b.clearcoat_alpha = alpha_of(material.clearcoat_roughness);
     return b;
@@ -117,7 +141,15 @@ Bsdf bsdf_of(SurfaceMaterial material, float ior, bool front) {
 
 // Of a surface that takes all light in.
 Bsdf black() {
-    return Bsdf(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, false);
+    return Bsdf(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, false, 1.0, vec3(1.0));
+}
+
+// Of a boundary of a solid that light does not see: all of it goes straight on.
+Bsdf clear_boundary() {
+    Bsdf b = black();
+    b.transmission = vec3(1.0);
+    b.glass = 1.0;
+    return b;
 }
 
 // The share of a lobe of width alpha that an eye path leaves to photons when it chooses between gathering and going on:

@@ -49,7 +49,7 @@ struct Vertex {
     Bsdf bsdf;
     vec3 wo;            // towards the eye
     vec3 throughput;    // of the path, before a lobe is chosen
-    uint depth;         // bounces before it
+    uint dimension;     // of its random numbers
     vec4 u;             // where in a lobe, and whether the surface is there
     LobeWeights lobes;  // to choose from: gathering has the place of the diffuse lobe
     LobeWeights rough;  // those of rough lobes that are followed
@@ -64,8 +64,8 @@ uint bounces_of(uint flags) { return flags & PATH_BOUNCES; }
 EyePath begin_eye_path(uint pixel) {
     EyePath path;
     path.pixel = pixel;
-    path.at = EyeState(vec3(0.0), PATH_OUTSIDE | PATH_STRAIGHT, vec3(0.0), 0.0, vec3(1.0), 0.0, vec3(0.0), 0.0,
-                       HIT_UNFINISHED, vec3[](vec3(0.0), vec3(0.0)), vec3(1.0));
+    path.at = EyeState(vec3(0.0), flags_at_eye(), vec3(0.0), 0.0, vec3(1.0), 0.0, vec3(0.0), 0.0, HIT_UNFINISHED,
+                       vec3[](vec3(0.0), vec3(0.0)), vec3(1.0), 0u, media_at_eye());
     path.light_rays = no_light_rays();
     path.position = HitPosition(vec3(0.0), HIT_NONE);
     path.weight = HitWeight(vec3(0.0), 0u);
@@ -102,6 +102,10 @@ void store(EyePath path) {
     if (HAS_AOVS && path.position.state != HIT_UNFINISHED) {
         add_layers(path.pixel, path.at.layer);
         if (HAS_ROUGH) eye_paths[path.pixel].flags = path.at.flags;  // for the gather
+    }
+    if (HAS_NESTED) {
+        eye_paths[path.pixel].flags = path.at.flags;  // likewise
+        eye_paths[path.pixel].media = path.at.media;
     }
     if (path.position.state == HIT_UNFINISHED) {
         eye_paths[path.pixel] = path.at;
@@ -166,22 +170,25 @@ void meet_nothing(inout EyePath path) {
 
 Vertex meet(inout EyePath path, Hit hit) {
     Vertex v;
-    v.depth = bounces_of(path.at.flags) - 1u;
+    v.dimension = dimension_of(path.at.met - 1u, 1u);
     path.at.distance += hit.t;
     path.at.leg += hit.t;
     v.wo = -path.at.direction;
     v.surface = surface_at(hit, path.at.direction);
     v.hit = hit;
     v.material = material_at(hit, path.at.direction, v.surface);
-    if (HAS_VOLUME) attenuate(path, transmittance(path.at.flags, v.surface, hit.t));
+    if (HAS_VOLUME) attenuate(path, transmittance(path.at.flags, path.at.media, v.surface, hit.t));
     v.u = vec4(0.0);
     if (HAS_ROUGH || HAS_ALPHA) {
-        v.u = random4(params.seed, launch.iteration, STREAM_EYE, picture_pixel(path.pixel), LOBE_DIMENSIONS + v.depth);
+        v.u = random4(params.seed, launch.iteration, STREAM_EYE, picture_pixel(path.pixel),
+                      LOBE_DIMENSIONS + v.dimension);
     }
     return v;
 }
 
-bool is_there(Vertex v) { return !(HAS_ALPHA && v.u.z >= coverage_of(v.material)); }
+bool is_there(EyePath path, Vertex v) {
+    return !is_culled(path.at.flags, v.surface, v.material) && !(HAS_ALPHA && v.u.z >= coverage_of(v.material));
+}
 
 bool is_unlit(Vertex v) { return HAS_UNLIT && has(v.material, SURFACE_UNLIT); }
 
@@ -217,9 +224,9 @@ void meet_emission(inout EyePath path, Vertex v) {
 
 // How the surface scatters, and what the path has to choose from there.
 void weigh_lobes(inout EyePath path, inout Vertex v) {
-    float ior = index_for_path(v.material, STREAM_EYE, picture_pixel(path.pixel), path.at.flags, path.at.throughput);
+    v.bsdf = bsdf_for_path(v.material, v.surface, STREAM_EYE, picture_pixel(path.pixel), path.at.flags, path.at.media,
+                           path.at.throughput);
     v.throughput = path.at.throughput;
-    v.bsdf = bsdf_of(v.material, ior, v.surface.front);
     v.lobes = lobes_of(v.bsdf, v.surface, v.wo);
     v.rough = share_with_photons(v.bsdf, v.lobes);
     v.rough_share = total(v.rough) / total(v.lobes);
@@ -235,9 +242,9 @@ vec3 light_from(EyePath path, Vertex v, LightSample light) {
     if (HAS_DIRECT && light.triangle != NO_TRIANGLE && !asks_emitter(light.density)) return vec3(0.0);
     uint part = HAS_DIRECT ? PART_ALL : PART_FOLLOWED;
     vec3 factor = light.radiance * rough_bsdf(v.bsdf, v.surface, v.wo, light.direction, part);
-    factor *= abs(dot(light.direction, v.surface.normal)) * transmittance_to(light, path.at.flags, v.bsdf, v.surface);
-    // What a path of full length would meet next it does not meet. (Rays to lights pass any number of surfaces that are
-    // partly there, of which each costs a path a bounce: where it has too few left that share is lost.)
+    factor *= abs(dot(light.direction, v.surface.normal)) *
+              transmittance_to(light, path.at.flags, path.at.media, v.bsdf, v.surface);
+    // What a path of full length would meet next it does not meet.
     if (HAS_ROUGH && light.density > 0.0 && v.rough_share > 0.0 && bounces_of(path.at.flags) < params.max_depth) {
         float other = v.rough_share * scatter_density(v.bsdf, v.surface, v.rough, v.wo, light.direction);
         factor *= light.density / (light.density + other);
@@ -248,7 +255,7 @@ vec3 light_from(EyePath path, Vertex v, LightSample light) {
 // Asks for lights: of each group for one or several points. Of all of a group that the path asks for one is kept in
 // proportion to what it brings (resampled importance sampling; Talbot, Cline and Egbert 2005).
 void ask(inout EyePath path, Vertex v) {
-    uint dimension = LIGHT_DIMENSIONS + v.depth;
+    uint dimension = LIGHT_DIMENSIONS + v.dimension;
     uint pixel = picture_pixel(path.pixel);
     uvec4 bits = random_words(params.seed, 0u, STREAM_EYE, pixel, dimension);
     for (uint g = 0u; g < GROUPS; ++g) {
@@ -286,7 +293,7 @@ void go_on_with_light_ray(inout EyePath path, uint found, Hit hit) {
 
 // A lobe, or LOBE_DIFFUSE to gather, by the probabilities of v.lobes.
 uint choose(inout EyePath path, Vertex v) {
-    uint dimension = v.depth + FIRST_BOUNCE_DIMENSION;
+    uint dimension = v.dimension + FIRST_BOUNCE_DIMENSION;
     float choice = stratified(params.seed, launch.iteration, picture_pixel(path.pixel), dimension);
     float inverse_probability;
     uint lobe = choose_lobe(v.lobes, choice, inverse_probability);
@@ -339,7 +346,8 @@ bool follow(inout EyePath path, Vertex v, uint lobe) {
         path.at.leg = 0.0;
     }
     bool goes_on = !all(lessThanEqual(path.at.throughput, vec3(0.0)));
-    path.at.flags = pass_boundary(path.at.flags, v.bsdf, lobe, v.surface);
+    pass_boundary(path.at.flags, path.at.media, v.bsdf, lobe, v.surface);
+    if (goes_straight(v.bsdf, lobe)) --path.at.flags;
     path.at.origin = leave(v.surface, path.at.direction);
     return goes_on;
 }

@@ -33,11 +33,12 @@ bool has_light_ray(inout LightRays rays) {
     return rays.of[0].distance > 0.0;
 }
 
-// What the solid that the ray goes through lets pass. flags: of the path that asks, at the surface.
-vec3 transmittance_to(LightSample light, uint flags, Bsdf bsdf, Surface surface) {
+// What the solid that the ray goes through lets pass. flags, media: of the path that asks, at the surface.
+vec3 transmittance_to(LightSample light, uint flags, uvec2 media, Bsdf bsdf, Surface surface) {
     if (!HAS_VOLUME) return vec3(1.0);
     bool through = dot(light.direction, surface.geometric) < 0.0;
-    uint medium = pass_boundary(flags, bsdf, through ? LOBE_TRANSMISSION : LOBE_NONE, surface) >> PATH_MEDIUM_SHIFT;
+    pass_boundary(flags, media, bsdf, through ? LOBE_TRANSMISSION : LOBE_NONE, surface);
+    uint medium = medium_of(flags);
     // To a light that is infinitely far away nothing gets through what absorbs.
     return medium == PATH_NO_MEDIUM ? vec3(1.0) : exp(-min(light.distance * absorption_of(medium), vec3(100.0)));
 }

@@ -39,6 +39,11 @@ vec4 random4(uint seed, uint iteration, uint stream, uint path, uint dimension) 
     return unit_floats(random_words(seed, iteration, stream, path, dimension));
 }
 
+// Where the random numbers begin of the surface that a path meets as number `met`, with `each` for one, up to 4: a path
+// goes straight through any number of surfaces, and dimensions of other uses begin at 4096. After 1024 surfaces they go
+// on beyond all of those, 65536.
+uint dimension_of(uint met, uint each) { return each * (met & 1023u) + (met >> 10u << 16u); }
+
 // Dimensions of an eye path that are stratified over the iterations of a pixel.
 #define STRATIFIED_DIMENSIONS 8u
 

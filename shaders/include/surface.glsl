@@ -153,7 +153,7 @@ SurfaceMaterial material_at(Hit hit, vec3 direction, inout Surface surface) {
         if (HAS_TRANSMISSION) {
             material.transmission *= texture_at(material.texture[TEXTURE_TRANSMISSION], coordinates).r;
         }
-        if (HAS_COAT) {
+        if (HAS_COAT || HAS_SPECULAR_GLASS) {
             material.specular *= texture_at(material.texture[TEXTURE_SPECULAR], coordinates).a;
             material.specular_color *= texture_at(material.texture[TEXTURE_SPECULAR_COLOR], coordinates).rgb;
         }

@@ -17,7 +17,7 @@ SEARCHES(STORES)
 
 // Goes on with the path until it ends or is out of steps.
 void follow_path(inout EyePath path) {
-    while (bounces_of(path.at.flags) < params.max_depth) {
+    while (bounces_of(path.at.flags) < params.max_depth && path.at.met < MOST_MET) {
         --path.steps;
         bool fresh = path.steps + 1 == int(params.step_budget);
         Hit hit;
@@ -27,16 +27,17 @@ void follow_path(inout EyePath path) {
             break;
         }
         ++path.rays;
-        ++path.at.flags;
+        ++path.at.met;
         if (found == TRACE_MISS) {
             meet_nothing(path);
             break;
         }
         Vertex vertex = meet(path, hit);
-        if (!is_there(vertex)) {
+        if (!is_there(path, vertex)) {
             path.at.origin = leave(vertex.surface, path.at.direction);
             continue;
         }
+        ++path.at.flags;
         describe(path, vertex);
         if (is_unlit(vertex)) {
             meet_unlit(path, vertex);
@@ -91,7 +92,7 @@ void main() {
     } else {
         if (!load(path)) return;
     }
-    bool begins = bounces_of(path.at.flags) == 0u;
+    bool begins = path.at.met == 0u;
     if (path.at.end == HIT_UNFINISHED) follow_path(path);
     // A loop of its own: software Vulkan runs all of a loop's code for every ray of it, and this one hardly shades.
     if (EYE_PATHS_ASK && path.position.state != HIT_UNFINISHED) follow_light_rays(path);

@@ -1,8 +1,8 @@
 #version 460
 // One invocation a pixel: sums the photons in its disc with the radius in force before this iteration's photons were
 // looked at, and bins them for the estimator. Reads hits, pixels, grid, sorted photons and their flux, in glossy scenes
-// hit_surface and the scene; writes gathered, tally or moments, cursors, and where asked for aovs, of which layers wait
-// in eye_paths between rounds.
+// hit_surface and the scene, and with solids in solids eye_paths; writes gathered, tally or moments, cursors, and where
+// asked for aovs, of which layers wait in eye_paths between rounds.
 // O(photons in the cells that the disc touches). Fails by running out of steps: goes on next round.
 // In glossy scenes every photon is weighed by the BSDF for its direction, made from the surface of the hit again.
 // Acceptance: |y - x| < R strictly (appm looks further for its derivative), and the photon's geometric normal agrees
@@ -53,10 +53,10 @@ void remake_surface(inout Receiver r) {
     Hit hit = Hit(0.0, record.triangle, record.barycentric, instance_of_hit(r.pixel));
     r.surface = surface_at(hit, -r.outgoing);
     SurfaceMaterial material = material_at(hit, -r.outgoing, r.surface);
-    uint flags = PATH_OUTSIDE;
+    uint flags = HAS_NESTED ? eye_paths[r.pixel].flags : PATH_OUTSIDE;
+    uvec2 media = HAS_NESTED ? eye_paths[r.pixel].media : NO_MEDIA;
     vec3 weight = vec3(1.0);
-    float ior = index_for_path(material, STREAM_EYE, picture_pixel(r.pixel), flags, weight);
-    r.bsdf = bsdf_of(material, ior, r.surface.front);
+    r.bsdf = bsdf_for_path(material, r.surface, STREAM_EYE, picture_pixel(r.pixel), flags, media, weight);
 }
 
 Receiver receiver_of(uint pixel, HitPosition hit) {

@@ -28,8 +28,8 @@ IMAGE(STORES)
 #define GROUP_DIMENSIONS 4096u //   of a group of lights, beyond them
 
 TraceState new_path(uint done, vec3 sum) {
-    return TraceState(vec3(0.0), PATH_OUTSIDE | PATH_STRAIGHT, vec3(0.0), DELTA, vec3(1.0), 0.0, vec3(0.0), done, sum,
-                      0u, no_light_rays());
+    return TraceState(vec3(0.0), flags_at_eye(), vec3(0.0), DELTA, vec3(1.0), 0.0, vec3(0.0), done, sum, 0u,
+                      no_light_rays(), 0u, media_at_eye());
 }
 
 float power_heuristic(float density, float other) {
@@ -67,7 +67,7 @@ void ask_for_light(inout TraceState state, Bsdf bsdf, Surface surface, LobeWeigh
         if (light.density > 0.0) {
             factor *= power_heuristic(light.density, scatter_density(bsdf, surface, lobes, wo, light.direction));
         }
-        factor *= transmittance_to(light, state.flags, bsdf, surface);
+        factor *= transmittance_to(light, state.flags, state.media, bsdf, surface);
         state.light_rays.of[g] = ray_to(light, state.throughput * factor, LAYER_REST, surface);
     }
 }
@@ -87,7 +87,8 @@ bool scatter(inout TraceState state, Bsdf bsdf, Surface surface, LobeWeights lob
     }
     state.throughput *= weight;
     state.flags = leave_lobe(split_path(state.flags, state.density), state.density);
-    state.flags = pass_boundary(state.flags, bsdf, lobe, surface);
+    pass_boundary(state.flags, state.media, bsdf, lobe, surface);
+    if (!goes_straight(bsdf, lobe)) ++state.flags;
     return any(greaterThan(state.throughput, vec3(0.0)));
 }
 
@@ -105,23 +106,21 @@ void meet_nothing(inout TraceState state, vec3 direction) {
 // the path ends.
 bool meet(inout TraceState state, uint pixel, uint path, Hit hit, Surface surface, SurfaceMaterial material,
           float coverage) {
-    uint bounces = state.flags & PATH_BOUNCES;
     state.distance += hit.t;
-    if (HAS_VOLUME) state.throughput *= transmittance(state.flags, surface, hit.t);
-    uint dimension = FIRST_DIMENSION + 3u * bounces;
+    if (HAS_VOLUME) state.throughput *= transmittance(state.flags, state.media, surface, hit.t);
+    uint dimension = FIRST_DIMENSION + dimension_of(state.met, 3u);
     vec4 u = random4(params.seed, path, STREAM_PATH, pixel, dimension + 1u);
     vec4 v = random4(params.seed, path, STREAM_PATH, pixel, dimension + 2u);
     bool alive = true;
-    if (HAS_ALPHA && v.z >= coverage) {
+    if (is_culled(state.flags, surface, material) || (HAS_ALPHA && v.z >= coverage)) {
         // It is not there.
     } else if (HAS_UNLIT && has(material, SURFACE_UNLIT)) {
         if ((state.flags & PATH_STRAIGHT) != 0u) state.radiance += state.throughput * material.color;
         alive = false;
     } else {
         state.radiance += state.throughput * met_emission(state, surface, material);
-        float ior = index_for_path(material, STREAM_PATH, pixel + state.done * (params.width * params.height),
-                                   state.flags, state.throughput);
-        Bsdf bsdf = bsdf_of(material, ior, surface.front);
+        uint number = pixel + state.done * (params.width * params.height);
+        Bsdf bsdf = bsdf_for_path(material, surface, STREAM_PATH, number, state.flags, state.media, state.throughput);
         LobeWeights lobes = lobes_of(bsdf, surface, -state.direction);
         // Lamps seen by way of weak lobes must not be missed.
         if ((state.flags & PATH_STRAIGHT) != 0u) lobes = evened(lobes);
@@ -129,7 +128,8 @@ bool meet(inout TraceState state, uint pixel, uint path, Hit hit, Surface surfac
         alive = scatter(state, bsdf, surface, lobes, u);
         state.distance = 0.0;
     }
-    alive = alive && bounces < params.max_depth;
+    uint bounces = state.flags & PATH_BOUNCES;
+    alive = alive && bounces < params.max_depth && state.met < MOST_MET;
     if (alive && bounces >= FIRST_ROULETTE) {
         // Russian roulette.
         float survival = min(1.0, largest(state.throughput));
@@ -167,7 +167,7 @@ void main() {
         bool shadow = has_light_ray(state.light_rays);
         LightRay light_ray = state.light_rays.of[0];
         float from_eye;
-        if ((state.flags & PATH_BOUNCES) == 0u) {
+        if (state.met == 0u) {
             camera_ray(picture_pixel(pixel), path, state.origin, state.direction, from_eye);
         }
         vec3 origin = shadow ? light_ray.origin : state.origin;
@@ -194,7 +194,7 @@ void main() {
                 pass_surface(light_ray, surface, hit.t, vec3(1.0 - coverage));
                 state.light_rays.of[0] = light_ray;
             } else {
-                ++state.flags;
+                ++state.met;
                 state.ended = meet(state, picture_pixel(pixel), path, hit, surface, material, coverage) ? 0u : 1u;
             }
         }

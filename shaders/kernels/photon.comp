@@ -44,6 +44,7 @@ void begin_light_path(inout PathState state) {
     // Of no area, so that no eye path meets it.
     bool punctual = kind == LIGHT_POINT || kind == LIGHT_SPOT || kind == LIGHT_DIRECTIONAL;
     state.flags = PATH_OUTSIDE | PATH_DIRECT;
+    state.media = NO_MEDIA;
     if (punctual) state.flags |= PATH_STRAIGHT;
     state.origin = enter_bounds(state.origin, state.direction);
     state.power0 = largest(state.power);
@@ -90,7 +91,8 @@ bool scatter(inout PathState state, Bsdf bsdf, Surface surface, vec4 u) {
     state.flags = split_photon(state.flags, density, lit_near);
     alive = alive && !split_ends(state.flags);
     if (HAS_SMOOTH && density != DELTA) state.power *= shading_correction(surface, before, state.direction);
-    state.flags = pass_boundary(state.flags, bsdf, lobe, surface);
+    pass_boundary(state.flags, state.media, bsdf, lobe, surface);
+    if (!goes_straight(bsdf, lobe)) ++state.flags;
     return alive;
 }
 
@@ -104,13 +106,12 @@ bool survives(inout PathState state, float u) {
 // What the path meets at a hit: a photon is stored where any may be gathered, and the path scatters. False where it
 // ends there.
 bool meet(inout PathState state, uint slot, Hit hit) {
-    uint bounces = state.flags & PATH_BOUNCES;
     Surface surface = surface_at(hit, state.direction);
     SurfaceMaterial material = material_at(hit, state.direction, surface);
-    if (HAS_VOLUME) state.power *= transmittance(state.flags, surface, hit.t);
-    vec4 u = random4(params.seed, launch.iteration, STREAM_PHOTON, state.path, bounces + 1u);
-    float ior = index_for_path(material, STREAM_PHOTON, state.path, state.flags, state.power);
-    Bsdf bsdf = bsdf_of(material, ior, surface.front);
+    if (HAS_VOLUME) state.power *= transmittance(state.flags, state.media, surface, hit.t);
+    vec4 u = random4(params.seed, launch.iteration, STREAM_PHOTON, state.path, dimension_of(state.met, 1u) + 1u);
+    Bsdf bsdf =
+        bsdf_for_path(material, surface, STREAM_PHOTON, state.path, state.flags, state.media, state.power);
     if (HAS_UNLIT && has(material, SURFACE_UNLIT)) bsdf = black();
     // What is black reflects no photon to any eye. Where a surface is partly there the photon counts in full: it tells
     // how much light arrives, and the eye path has asked for the surface.
@@ -126,7 +127,8 @@ bool meet(inout PathState state, uint slot, Hit hit) {
     }
     bool alive = true;
     if (there) alive = scatter(state, bsdf, surface, u);
-    alive = alive && bounces < params.max_depth && largest(state.power) > 0.0;
+    alive = alive && (state.flags & PATH_BOUNCES) < params.max_depth && state.met < MOST_MET;
+    alive = alive && largest(state.power) > 0.0;
     if (alive) alive = survives(state, u.z);
     state.origin = leave(surface, state.direction);
     return alive;
@@ -137,7 +139,7 @@ void end_light_path(inout PathState state, uint slot) {
     counters[PATH_COUNTS + state.path] = state.stored - state.begin;
     counters[PATH_SLOTS + state.path] = slot + state.begin;
     state.path = NO_PATH;
-    state.flags = PATH_OUTSIDE;
+    state.met = 0u;
 }
 
 // Where the lane has no path: takes the next one of its subgroup's, up to `end`; false where there is none left.
@@ -163,7 +165,8 @@ void main() {
 
     PathState state;
     if (launch.round == 0u) {
-        state = PathState(vec3(0.0), NO_PATH, vec3(0.0), PATH_OUTSIDE, vec3(0.0), 0u, 0.0, 0u, first, 0.0);
+        state = PathState(vec3(0.0), NO_PATH, vec3(0.0), PATH_OUTSIDE, vec3(0.0), 0u, 0.0, 0u, first, 0.0, 0u,
+                          NO_MEDIA);
     } else {
         state = paths[lane];
     }
@@ -178,7 +181,7 @@ void main() {
     while (lanes(running) > 0u) {
         running = take_path(state, running, end);
         if (running && fresh) {
-            if ((state.flags & PATH_BOUNCES) == 0u) begin_light_path(state);
+            if (state.met == 0u) begin_light_path(state);
             traversal = begin_traversal(state.origin, state.direction);
             fresh = false;
         }
@@ -195,7 +198,7 @@ void main() {
         first_ray = false;
         fresh = true;
         ++rays;
-        ++state.flags;
+        ++state.met;
         // A photon that is no number would make one of every disc that it falls into.
         bool valid = finite(state.power) && finite(state.direction);
         if (!valid) atomicAdd(status.invalid, 1u);

@@ -85,7 +85,9 @@ using uint = std::uint32_t;
     SETTING(24, SPLIT, caustics alone)                                                                         \
     /* eye paths ask for direct light, photons bring the rest: include/direct.glsl */                          \
     SETTING(25, DIRECT, direct light asked for)                                                                \
-    SCENE(26, INSTANCES, instances)              /* of meshes that are stored once */
+    SCENE(26, INSTANCES, instances)              /* of meshes that are stored once */                          \
+    MATERIAL(27, SPECULAR_GLASS, specular factors of glass, specular_glass)                                    \
+    SCENE(28, NESTED, solids in one another)     /* or that touch or overlap: include/media.glsl */
 // clang-format on
 #define FEATURE_BIT(bit, NAME, words) VKCPPM_CONST uint FEATURE_##NAME = 1u << bit;
 #define FEATURE_BIT_OF_MATERIAL(bit, NAME, words, trait) FEATURE_BIT(bit, NAME, words)
@@ -108,7 +110,7 @@ FEATURE_TABLE(FEATURE_BIT_OF_MATERIAL, FEATURE_BIT, FEATURE_BIT)
     (((features) & (FEATURE_ROUGH | FEATURE_DIRECT)) > ((features) & FEATURE_SPLIT))
 // Those that ask for parts of a SurfaceMaterial.
 #define FEATURES_OF_SCATTERING (FEATURE_REFLECTION | FEATURE_TRANSMISSION)
-#define FEATURES_OF_COATS (FEATURE_COAT | FEATURE_ALPHA)
+#define FEATURES_OF_COATS (FEATURE_COAT | FEATURE_ALPHA | FEATURE_SPECULAR_GLASS)
 #define FEATURES_OF_LAYERS (FEATURE_CLEARCOAT | FEATURE_ALPHA | FEATURE_NORMAL_MAPS)
 #define FEATURES_OF_PUNCTUAL_LIGHTS (FEATURE_POINT_LIGHTS | FEATURE_SPOT_LIGHTS | FEATURE_DIRECTIONAL_LIGHTS)
 
@@ -129,6 +131,7 @@ FEATURE_TABLE(FEATURE_BIT_OF_MATERIAL, FEATURE_BIT, FEATURE_BIT)
 #define SURFACE_BLEND 0x8u         // there with probability alpha
 #define SURFACE_UNLIT 0x10u
 #define SURFACE_TEXTURED 0x20u
+#define SURFACE_CULLED 0x40u       // its back is not there for the camera
 
 // Textures of a SurfaceMaterial.
 #define TEXTURE_BASE_COLOR 0
@@ -257,7 +260,7 @@ struct TriangleShading {
     OPTIONAL(FEATURES_OF_LAYERS, 1.0f, float, normal_scale) \
     ARRAY(FEATURE_TEXTURES, uint, texture, TEXTURE_COUNT)  /* 1 + index of a TextureLookup; 0: none */ \
     OPTIONAL(FEATURE_TEXTURES, 1.0f, float, clearcoat_normal_scale) \
-    FIELD(uint, unused)
+    OPTIONAL(FEATURE_NESTED, 0u, uint, priority)  /* of the solid; where several are, the largest counts */
 RECORD(SurfaceMaterial)
 
 // 48 bytes, read as 3 uvec4 texels. uv' = (matrix.xy . uv, matrix.zw . uv) + offset.
@@ -349,7 +352,7 @@ RECORD(HitSurface)
 #define HIT_BITS 2u
 
 // The flags of a path in flight, one word: bounces | PATH_* | material of the solid it is in << PATH_MEDIUM_SHIFT.
-#define PATH_BOUNCES 0x7ffu     // up to the largest --max-depth, 1024
+#define PATH_BOUNCES 0x7ffu     // surfaces that have sent it elsewhere, up to the largest --max-depth, 1024
 #define PATH_STRAIGHT 0x800u    // it has met nothing but delta lobes since it left the eye or a punctual light; where
                                 // light is split, a photon also since a surface near its lamp
 #define PATH_DISPERSED 0x1000u  // its wavelength is drawn
@@ -366,6 +369,8 @@ RECORD(HitSurface)
                                 // eye path whose last lobe was a delta and one before was not
 #define PATH_MEDIUM_SHIFT 16u
 #define PATH_NO_MEDIUM 0xffffu  // also the largest number of materials
+
+#define MOST_MET 0x100000u      // surfaces that a path meets, those that it passes straight included; there it ends
 
 // What light has met between its source and the surface that is seen: the first that is not perfectly smooth. What is
 // seen to emit is direct light too. LAYER_DIRECT and LAYER_CAUSTIC index Aovs::layer.
@@ -403,6 +408,8 @@ struct EyeState {
     uint end;              // state of the hit that it has ended in; HIT_UNFINISHED: it goes on
     vec3 layer[LAYERS];    // of the emission, where there are further channels
     vec3 direct;           // what the throughput is for direct light that the next ray meets: include/direct.glsl
+    uint met;              // surfaces
+    uvec2 media;           // include/media.glsl
 };
 
 // Sum of one pass of the gather over a pixel's disc, read as 2 texels.
@@ -471,6 +478,8 @@ struct PathState {
     uint begin;        // stored before this path
     uint next;         // path that the SIMD group takes next
     float near;        // length from its light within which photons bring direct light, less what it has gone
+    uint met;          // surfaces
+    uvec2 media;       // include/media.glsl
 };
 #define NO_PATH 0xffffffffu
 
@@ -488,6 +497,8 @@ struct TraceState {
     vec3 sum;              //   and their radiance
     uint ended;            // 1: the path ends with the rays to lights
     LightRays light_rays;
+    uint met;              // surfaces
+    uvec2 media;           // include/media.glsl
 };
 
 // Where a resumable walk over the grid goes on.
@@ -553,6 +564,8 @@ struct Params {
     uint photon_capacity;  // slots a lane
     float bounds_radius;   // of a sphere about the origin, padded alike
     uint max_depth;
+    uvec2 eye_media;       // the solids that the eye is in, as of a path: include/media.glsl
+    uint eye_medium;
     uint light_count;
     float near_lights;     // frame units; 0 where light is not split
     float light_power;     // of all lights, mean channel, W (frame-scaled): what the alias table is in proportion to

@@ -89,6 +89,11 @@ std::vector<Case> cases() {
              m.attenuation_color = {0.9f, 0.5f, 0.3f};
              m.attenuation_distance = 0.5f;
          })},
+        {"specular factors of glass", FEATURE_SPECULAR_GLASS, glass([](Material& m) { m.specular = 0.5f; })},
+        {"solids in solids", FEATURE_NESTED,
+         [](Scene& s, Settings&) {
+             add_sphere(s, {0.55, 0.45, 0.8}, 0.2, 2, add_material(s, vkcppm::test::glass(1.33f)), true);
+         }},
         {"dispersion", FEATURE_DISPERSION, glass([](Material& m) { m.dispersion = 0.5f; })},
         {"clearcoats", FEATURE_CLEARCOAT | FEATURE_GLOSS, diffuse([](Material& m) { m.clearcoat = 1.0f; })},
         {"base colour textures", FEATURE_TEXTURES,

@@ -44,7 +44,7 @@ enum LobeIndex : std::uint32_t {
 // clang-format on
 
 constexpr std::uint32_t features = FEATURE_REFLECTION | FEATURE_TRANSMISSION | FEATURE_GLOSS | FEATURE_ROUGH |
-                                   FEATURE_COAT | FEATURE_CLEARCOAT | FEATURE_THIN;
+                                   FEATURE_COAT | FEATURE_CLEARCOAT | FEATURE_THIN | FEATURE_SPECULAR_GLASS;
 constexpr std::uint32_t knn = 10;
 constexpr float delta = 1e38f;  // densities above it are infinite
 
@@ -94,6 +94,17 @@ std::vector<Case> cases(float roughness) {
     from_both_sides("glass in part", [](Material& m) {
         m.transmission = 0.6f, m.thickness = 1.0f, m.metallic = 0.3f, m.specular = 1.0f;
     });
+    for (const float thickness : {0.0f, 1.0f}) {
+        const std::string kind = thickness > 0.0f ? "glass" : "thin glass";
+        from_both_sides((kind + " that reflects less").c_str(), [=](Material& m) {
+            glass(1.5f, thickness)(m);
+            m.specular = 0.4f;
+        });
+        from_both_sides((kind + " that reflects in colours").c_str(), [=](Material& m) {
+            glass(1.7f, thickness)(m);
+            m.specular = 0.9f, m.specular_color = {1.0f, 0.3f, 20.0f};
+        });
+    }
     add("clearcoat over black",
         [=](Material& m) { m.base_color = glm::vec3(0.0f), m.clearcoat = 1.0f, m.clearcoat_roughness = roughness; });
     add("clearcoat over diffuse", [=](Material& m) { m.clearcoat = 0.8f, m.clearcoat_roughness = roughness; });

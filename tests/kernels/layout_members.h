@@ -13,7 +13,7 @@
 #define MEMBERS_SURFACE_MATERIAL \
     X(color) X(flags) X(emission) X(ior) X(metallic) X(roughness) X(transmission) X(specular) X(specular_color) \
     X(opacity) X(absorption) X(cauchy) X(clearcoat) X(clearcoat_roughness) X(alpha_cutoff) X(normal_scale) X(texture) \
-    X(clearcoat_normal_scale) X(unused)
+    X(clearcoat_normal_scale) X(priority)
 #define MEMBERS_TEXTURE_LOOKUP X(first) X(width) X(height) X(flags) X(matrix) X(offset) X(unused)
 #define MEMBERS_LIGHT X(position) X(kind) X(e1) X(keep) X(e2) X(alias_entry) X(power) X(double_sided) X(corner) \
     X(triangle) X(textured)
@@ -33,9 +33,9 @@
 #define MEMBERS_AOVS X(albedo) X(normal) X(depth) X(hits) X(albedo_low) X(normal_low) X(depth_low) X(layer) X(layer_low)
 #define MEMBERS_FILM X(sum) X(low)
 #define MEMBERS_PATH_STATE X(origin) X(path) X(direction) X(flags) X(power) X(stored) X(power0) X(begin) X(next) \
-    X(near)
+    X(near) X(met) X(media)
 #define MEMBERS_TRACE_STATE X(origin) X(flags) X(direction) X(density) X(throughput) X(distance) X(radiance) X(done) \
-    X(sum) X(ended) X(light_rays)
+    X(sum) X(ended) X(light_rays) X(met) X(media)
 #define MEMBERS_CURSOR X(cell) X(photon)
 #define MEMBERS_GRID X(origin) X(levels) X(dims) X(cell) X(inverse_cell) X(reach) X(first) X(entries)
 #define MEMBERS_STATUS X(blocked) X(completed) X(capacity) X(stuck) X(invalid) X(rays) \
@@ -44,12 +44,13 @@
 #define MEMBERS_PARAMS \
     X(eye) X(width) X(right) X(height) X(up) X(seed) X(forward) X(pixel_radius) X(bounds_low) X(photons) \
     X(bounds_high) X(photons_per_lane) X(photon_lanes) X(photon_capacity) X(bounds_radius) X(max_depth) \
-    X(light_count) X(near_lights) X(light_power) X(asked) X(local_power) X(environment_power) X(environment) \
+    X(eye_media) X(eye_medium) X(light_count) X(near_lights) X(light_power) X(asked) X(local_power) \
+    X(environment_power) X(environment) \
     X(lens_radius) X(focus_distance) X(start) X(step_budget) X(knn) X(radius_cap) X(radius_floor) X(footprint_cap) \
     X(inverse_paths) X(flux_unit) X(alpha) X(k) X(beta) \
     X(cells) X(grid_levels) X(most_levels) X(sort_lanes) X(scan_blocks) X(threshold) X(sector_edge) X(sector_centre)
 #define MEMBERS_EYE_STATE X(origin) X(flags) X(direction) X(followed) X(throughput) X(leg) X(emission) X(distance) \
-    X(end) X(layer) X(direct)
+    X(end) X(layer) X(direct) X(met) X(media)
 #define MEMBERS_SEARCH_STATE X(largest) X(largest_index) X(radius) X(kept)
 #define MEMBERS_LAUNCH X(iteration) X(round) X(last_round) X(paths) X(search_group) X(level) X(scan_first) \
     X(scan_count) X(digit_shift) X(reads_b) X(plans_next) X(band) X(last_band) X(first_pixel) X(pixels) X(argument) \

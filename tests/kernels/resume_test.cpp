@@ -116,6 +116,37 @@ TEST_F(Determinism, SmallStepBudgetsGiveTheSameBitsInInstances) {
     expect_same_picture(cut.integrator.resolve(), whole.integrator.resolve());
 }
 
+// What a path remembers of surfaces that it has passed straight, and of the solids that it is in, waits with it.
+TEST_F(Determinism, SmallStepBudgetsGiveTheSameBitsThroughSheetsAndInNestedSolids) {
+    Scene scene = make_room();
+    constexpr std::uint32_t ball = 2;
+    Material& outer = scene.materials[ball];
+    outer.transmission = outer.thickness = 1.0f;
+    outer.roughness = 0.2f;
+    outer.attenuation_color = {0.9f, 0.5f, 0.3f};
+    outer.attenuation_distance = 0.3f;
+    Material inner = glass(1.33f);
+    add_sphere(scene, {0.65, 0.5, 0.8}, 0.3, 3, add_material(scene, inner), true);
+    Material faint = lambert(glm::vec3(0.5f));
+    faint.alpha = Material::Alpha::blend;
+    faint.opacity = 0.1f;
+    const std::uint32_t sheet = add_material(scene, faint);
+    for (int i = 0; i < 20; ++i) add_quad(scene, {0.2, 0.2, 1.3 + 0.02 * i}, {1.6, 0, 0}, {0, 1.6, 0}, sheet);
+    const Settings settings = settings_of("cppm");
+    Rig whole(scene, settings);
+    ASSERT_NE(whole.flat.nested, "");
+    whole.integrator.run(iterations);
+    for (const std::uint32_t budget : {150u, 177u}) {
+        Rig cut(scene, settings);
+        gpu::Params params = cut.integrator.params();
+        params.step_budget = budget;
+        cut.integrator.set_params(params);
+        cut.integrator.run(iterations);
+        for (const Pass pass : {Pass::eye, Pass::photon}) EXPECT_GT(calls(cut, pass), calls(whole, pass)) << "not cut";
+        expect_same_picture(cut.integrator.resolve(), whole.integrator.resolve(), fmt::format("budget {}", budget));
+    }
+}
+
 // Where eye paths ask for lights, the ray to one is cut too, also behind a path that has ended.
 TEST_F(Determinism, SmallStepBudgetsGiveTheSameBitsWhereLightsAreAskedFor) {
     for (const Case& room : small_light_cases()) {

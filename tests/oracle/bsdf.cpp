@@ -129,6 +129,27 @@ double Bsdf::fresnel_exact(double cosine) const {
     return ior == 1.0 ? 0.0 : fresnel_dielectric(cosine, thin || front ? ior : 1.0 / ior);
 }
 
+/// KHR_materials_specular on glass: f0 times colour and strength, f90 times strength. A channel of colour c has c times
+/// the exact reflectance and 1 - c times Schlick's of a normal incidence of 0, at the larger of the angles on both
+/// sides; total reflection stays total.
+glm::dvec3 Bsdf::fresnel_glass(double cosine) const {
+    const double exact = fresnel_exact(cosine);
+    if (ior == 1.0) return glm::dvec3(0.0);
+    double larger = cosine;  // the cosine of the larger angle
+    if (ior != 0.0) {
+        const double sine = std::sqrt(1.0 - cosine * cosine) / (thin || front ? ior : 1.0 / ior);
+        if (sine >= 1.0) return glm::dvec3(1.0);
+        larger = std::min(cosine, std::sqrt(1.0 - sine * sine));
+    }
+    const double most = ior == 0.0 ? 1.0 : std::pow((1.0 + ior) / (1.0 - ior), 2);  // of f0 is 1
+    const glm::dvec3 color = glm::min(specular_color, most);
+    const glm::dvec3 mixed = color * exact + (1.0 - color) * fresnel_schlick(glm::dvec3(0.0), 1.0, larger);
+    return specular * glm::clamp(mixed, 0.0, 1.0);
+}
+
+/// Of all channels alike, as much as the brightest leaves.
+double Bsdf::through_glass(double cosine) const { return 1.0 - brightest(fresnel_glass(cosine)); }
+
 glm::dvec3 Bsdf::fresnel_coat(double cosine) const {
     const double normal_incidence = ior == 0.0 ? 1.0 : std::pow((1.0 - ior) / (1.0 + ior), 2);
     return fresnel_schlick(glm::min(normal_incidence * specular_color, 1.0) * specular, specular, cosine);
@@ -138,7 +159,7 @@ glm::dvec3 Bsdf::reflectance(double cosine) const {
     glm::dvec3 sum(0.0);
     if (metallic > 0.0) sum += metallic * fresnel_metal(base_color, cosine);
     if (metallic < 1.0 && transmission < 1.0) sum += (1.0 - metallic) * (1.0 - transmission) * fresnel_coat(cosine);
-    if (transmits()) sum += (1.0 - metallic) * transmission * fresnel_exact(cosine);
+    if (transmits()) sum += (1.0 - metallic) * transmission * fresnel_glass(cosine);
     return sum;
 }
 
@@ -212,7 +233,7 @@ glm::dvec3 Bsdf::evaluate(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi)
     // Walter et al. 2007, equation 21, with the squared index of the side of wi: of radiance over squared index. Thin
     // and mirrored, the Jacobian turns it into F D V of reflection.
     return (1.0 - metallic) * transmission * base_color *
-           (below_coat(absolute_cosine(wo, normal)) * (1.0 - fresnel_exact(std::min(oh, 1.0))) * ggx(alpha, normal, h) *
+           (below_coat(absolute_cosine(wo, normal)) * through_glass(std::min(oh, 1.0)) * ggx(alpha, normal, h) *
             visibility(alpha, co, ci) * 4.0 * oh * half_vector_jacobian(lobe, wo, wi, h));
 }
 
@@ -247,7 +268,7 @@ Bsdf::Deltas Bsdf::delta_lobes(const glm::dvec3& wo) const {
     if (is_delta(Lobe::transmission) && has(Lobe::transmission)) {
         if (const auto direction = thin ? std::optional(-wo) : refract(wo, normal)) {
             add(Lobe::transmission, *direction,
-                (1.0 - metallic) * transmission * base_color * ((1.0 - fresnel_exact(co)) * below_coat(co)));
+                (1.0 - metallic) * transmission * base_color * (through_glass(co) * below_coat(co)));
         }
     }
     return deltas;

@@ -91,6 +91,8 @@ private:
     bool is_delta(Lobe lobe) const;
     bool has(Lobe lobe) const;
     double fresnel_exact(double cosine) const;
+    glm::dvec3 fresnel_glass(double cosine) const;
+    double through_glass(double cosine) const;
     glm::dvec3 fresnel_coat(double cosine) const;
     glm::dvec3 reflectance(double cosine) const;
     double below_coat(double cosine) const;

@@ -61,12 +61,18 @@ struct Tracer {
         return result;
     }
 
-    /// What the ray meets of surfaces that are there.
-    std::optional<Hit> meet(Ray ray, std::mt19937_64& random) const {
+    /// An opaque surface of one side, whose back the camera does not see.
+    bool is_back(const Ray& ray, const Hit& hit) const {
+        const Material& material = material_of(hit);
+        return !material.double_sided && material.transmission == 0.0f && !surface_at(scene, hit, ray.direction).front;
+    }
+
+    /// What the ray meets of surfaces that are there. culls: backs are not, either.
+    std::optional<Hit> meet(Ray ray, std::mt19937_64& random, bool culls) const {
         for (;;) {
             const auto hit = bvh.nearest(ray);
-            if (!hit || !has_alpha) return hit;
-            const double solid = coverage(scene, *hit);
+            if (!hit || (!has_alpha && !culls)) return hit;
+            const double solid = culls && is_back(ray, *hit) ? 0.0 : coverage(scene, *hit);
             if (solid >= 1.0 || (solid > 0.0 && uniform(random) < solid)) return hit;
             ray.t_min = hit->t;
         }
@@ -166,6 +172,7 @@ struct Tracer {
         glm::dvec3 throughput{1.0};
         std::optional<double> pdf{};         // 1/sr of the last bounce; none after the camera and delta lobes
         bool seen_directly = true;           // so far
+        bool culls = true;                   // nothing has sent it elsewhere yet
         std::vector<std::uint32_t> media{};  // materials of the volumes it is in, innermost last
         std::optional<double> wavelength{};  // nm
 
@@ -196,7 +203,7 @@ struct Tracer {
         glm::dvec3 sum(0.0);
         Path path{camera_ray};
         for (std::uint32_t depth = 0; depth <= max_depth; ++depth) {
-            const auto hit = meet(path.ray, random);
+            const auto hit = meet(path.ray, random, path.culls);
             if (!hit) return sum + path.throughput * escaped(path);
             const std::uint32_t material_index = scene.triangles[hit->triangle].material;
             const Material& material = scene.materials[material_index];
@@ -239,6 +246,7 @@ struct Tracer {
             path.throughput *= next->weight;
             path.pdf = next->pdf > 0.0 ? std::optional(next->pdf) : std::nullopt;
             path.seen_directly = path.seen_directly && !path.pdf;
+            path.culls = path.culls && next->direction == path.ray.direction;
             if (next->lobe == Lobe::transmission) {
                 path.throughput *= through_color;
                 path.wavelength = drawn ? drawn : path.wavelength;

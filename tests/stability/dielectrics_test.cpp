@@ -153,7 +153,7 @@ TEST_F(Dielectrics, TouchingOtherSurfaces) {
         add_camera(scene, {0.0, 1.7, 1.0}, {0, 0.2, 0.0}, 0.7);
         return scene;
     };
-    expect_picture("water on glass, against 1e-4 above it", picture(two_plates(0.0)), picture(two_plates(1e-4)), 0.05);
+    expect_picture("water on glass, against 1e-4 into it", picture(two_plates(0.0)), picture(two_plates(-1e-4)), 0.05);
     const auto filled = [](double gap) {
         Scene scene;
         add_quad(scene, {-1, -1, -1}, {0, 0, 2}, {2, 0, 0}, add_material(scene, lambert({0.3f, 0.5f, 0.7f})));
@@ -171,7 +171,7 @@ TEST_F(Dielectrics, TouchingOtherSurfaces) {
         add_camera(scene, {0.0, 1.5, 1.0}, {0, 0, 0.0}, 0.7);
         return scene;
     };
-    expect_picture("a glass filled to its wall, against 1e-4 off it", picture(filled(0.0)), picture(filled(1e-4)),
+    expect_picture("a glass filled to its wall, against 1e-4 into it", picture(filled(0.0)), picture(filled(-1e-4)),
                    0.02);
 }
 

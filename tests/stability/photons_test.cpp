@@ -4,6 +4,7 @@
 #include <random>
 #include <string>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "stability/table.h"
@@ -154,6 +155,44 @@ TEST_F(HardPhotons, RadiiThatDifferByAMillion) {
     }
     EXPECT_GT(counted, 100.0 * double(hits.size()));
     expect_error("photons missed or gathered twice, radii from 1e-6 to 1", differences / counted, 0.0);
+}
+
+// A box of 1 m on wide ground in the sun at 45 degrees, its shadow in the middle of a picture of 4 m: asked for, it is
+// sharp however wide the ground is; photons that fall all over 1 km have discs that hold no shadow, and it is said.
+TEST_F(HardPhotons, OnWideGround) {
+    const auto ground = [](double half) {
+        Scene scene;
+        add_quad(scene, {-half, 0, -half}, {0, 0, 2 * half}, {2 * half, 0, 0},
+                 add_material(scene, lambert(glm::vec3(0.5f))));
+        add_box(scene, {-1.5, 0, -0.5}, {-0.5, 1, 0.5}, add_material(scene, lambert(glm::vec3(0.0f))), false);
+        add_directional_light(scene, glm::normalize(glm::dvec3(1, -1, 0)), glm::vec3(3.0f));
+        add_camera(scene, {0, 8, 0.001}, {0, 0, 0}, 0.5);
+        return scene;
+    };
+    struct Case {
+        double half;
+        const char* direct;
+        bool says;
+    };
+    for (const Case& c : {Case{10.0, direct_gathered, false},
+                          {500.0, direct_gathered, true},
+                          {10.0, direct_sampled, false},
+                          {500.0, direct_sampled, false}}) {
+        Settings settings = settings_of({32, 32}, 65536);
+        settings.direct = c.direct;
+        settings.iterations = 16;
+        const Rendering got = render(ground(c.half), settings, plain_device(), [](const Progress&) { return true; });
+        EXPECT_EQ(!got.warnings.empty(), c.says) << c.half << " m, " << c.direct;
+        for (const std::string& line : got.warnings) {
+            EXPECT_NE(line.find("photons an iteration do not suffice"), std::string::npos) << line;
+        }
+        if (c.says) continue;
+        const auto at = [&](int x) { return double(got.image.rgb[std::size_t(16 * 32 + x)].r); };
+        const double lit = 0.5 / 3.14159265 * 3.0 * std::sqrt(0.5);
+        expect_error(fmt::format("a shadow on ground of {} m, {}, of what is lit", c.half, c.direct), at(15) / lit,
+                     0.1);
+        expect_error(fmt::format("beside it, {} m, {}", c.half, c.direct), std::abs(at(28) / lit - 1.0), 0.15);
+    }
 }
 
 }  // namespace

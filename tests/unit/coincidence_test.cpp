@@ -73,8 +73,8 @@ TEST(Coincidence, GlassGivesWayToWhatItTouches) {
     EXPECT_GT(on_floor[1], 2.0f);
     EXPECT_LT(on_floor[1], 8.0f);
     const auto on_glass = shifts({in_plane(0.125f, 1.0f, true), bottom}, {glass, glass});
-    EXPECT_LT(on_glass[0], -2.0f) << "each into its own solid";
-    EXPECT_GT(on_glass[1], 2.0f);
+    EXPECT_GT(on_glass[0], 2.0f) << "each out of its own solid, so that nothing is between them";
+    EXPECT_LT(on_glass[1], -2.0f);
     EXPECT_EQ(shifts({floor, in_plane(0.126f, 0.5f, false)}, {diffuse, glass}), (std::vector{0.0f, 0.0f})) << "a gap";
     EXPECT_EQ(shifts({floor, in_plane(0.125f, 0.5f, true)}, {diffuse, glass})[1], 0.0f) << "side by side, fronts alike";
     Corners beside = bottom;

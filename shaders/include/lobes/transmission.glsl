@@ -48,9 +48,9 @@ vec3 transmission_sample(Bsdf b, Surface surface, Facet facet, vec2 u, bool radi
     vec3 weight = b.transmission * below_clearcoat(b, facet.wo_n);
     if (b.eta == 1.0) facet = smooth_facet(facet.n, wo);  // no facet bends it
     float cosine_t;
-    float reflectance = fresnel_dielectric(facet.wo_h, b.eta, cosine_t);
+    float transmittance = facet_transmittance(b, facet.wo_h, cosine_t);
     if (cosine_t == 0.0) return vec3(0.0);  // total internal reflection at this facet
-    weight *= (1.0 - reflectance) * (radiance ? b.eta * b.eta : 1.0);
+    weight *= transmittance * (radiance ? b.eta * b.eta : 1.0);
     vec3 refracted = normalize(b.eta * direction + (b.eta * facet.wo_h - cosine_t) * facet.h);
     if (facet.rough) {
         direction = refracted;
