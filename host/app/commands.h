@@ -27,6 +27,10 @@ void execute(const InfoOptions& options);
 /// Prints the Vulkan devices, usable or not.
 void execute(const DevicesOptions& options);
 
+/// Prints what a render hangs on: processor, memory, Vulkan, devices, and of what is amiss a line to mend it. Throws
+/// Error(no_device) after that where no device can render.
+void execute(const DoctorOptions& options);
+
 /// Prints the text.
 void execute(const TextOptions& options);
 

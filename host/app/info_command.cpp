@@ -83,6 +83,7 @@ Json json_of(const PunctualLight& light) {
     Json json{{"name", light.name}, {"kind", kind_name(light.kind)}, {"intensity", json_of(light.intensity)}};
     if (light.kind != PunctualLight::Kind::directional) json["position"] = json_of(light.position);
     if (light.kind != PunctualLight::Kind::point) json["direction"] = json_of(light.direction);
+    if (light.range > 0.0) json["range"] = light.range;
     if (light.kind == PunctualLight::Kind::spot) {
         json["inner_cone_degrees"] = degrees(light.inner_cone);
         json["outer_cone_degrees"] = degrees(light.outer_cone);
@@ -95,6 +96,7 @@ std::string text_of(const PunctualLight& light) {
         fmt::format("  {} '{}': {} {}", kind_name(light.kind), light.name, text_of(light.intensity), unit(light.kind));
     if (light.kind != PunctualLight::Kind::directional) text += " at " + text_of(light.position);
     if (light.kind != PunctualLight::Kind::point) text += " towards " + text_of(light.direction);
+    if (light.range > 0.0) text += fmt::format(", as far as {:g} m", light.range);
     if (light.kind == PunctualLight::Kind::spot) {
         text += fmt::format(", cone {:g} to {:g} degrees", degrees(light.inner_cone), degrees(light.outer_cone));
     }
@@ -184,7 +186,9 @@ Json json_of(const Scene& scene, const std::vector<Feature>& features) {
     json["cameras"] = Json::array();
     for (const Camera& camera : scene.cameras) {
         json["cameras"].push_back({{"name", camera.name},
-                                   {"yfov_degrees", degrees(camera.yfov)},
+                                   {"node", camera.node},
+                                   {"yfov_degrees", camera.ymag ? Json() : Json(degrees(camera.yfov))},
+                                   {"height", camera.ymag ? Json(2.0 * *camera.ymag) : Json()},
                                    {"aspect", camera.aspect ? Json(*camera.aspect) : Json()},
                                    {"position", json_of(camera.to_world[3])}});
     }
@@ -231,8 +235,12 @@ std::string plain_text(const Scene& scene, const std::vector<Feature>& features)
     fmt::format_to(out, "{} cameras\n", scene.cameras.size());
     for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
         const Camera& camera = scene.cameras[i];
-        fmt::format_to(out, "  {} '{}': {:g} degrees high{} at {}\n", i, camera.name, degrees(camera.yfov),
-                       camera.aspect ? fmt::format(", aspect {:g},", *camera.aspect) : "", text_of(camera.to_world[3]));
+        const std::string height = camera.ymag ? fmt::format("orthographic, {:g} m high", 2.0 * *camera.ymag)
+                                               : fmt::format("{:g} degrees high", degrees(camera.yfov));
+        fmt::format_to(
+            out, "  {} '{}'{}: {}{} at {}\n", i, camera.name,
+            camera.node.empty() || camera.node == camera.name ? "" : fmt::format(" of node '{}'", camera.node), height,
+            camera.aspect ? fmt::format(", aspect {:g},", *camera.aspect) : "", text_of(camera.to_world[3]));
     }
     fmt::format_to(out, "{} features, which its kernels are specialised to\n", features.size());
     for (const Feature& feature : features) fmt::format_to(out, "  {}: {}\n", feature.name, feature.reason);
@@ -244,7 +252,7 @@ std::string plain_text(const Scene& scene, const std::vector<Feature>& features)
 
 void execute(const InfoOptions& options) {
     const Scene scene = load_scene(options.scene);
-    print_warnings(scene.warnings);
+    tell_warnings(scene, options.scene);
     const FlatScene flat = flatten(scene);
     const std::optional<Memory> memory = memory_of(options, scene, flat);
     if (options.json) {

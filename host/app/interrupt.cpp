@@ -1,5 +1,6 @@
 #include "app/interrupt.h"
 
+#include <array>
 #include <atomic>
 #include <csignal>
 
@@ -9,17 +10,20 @@ namespace {
 std::atomic<bool> signalled = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may touch lock-free atomics alone");
 
+constexpr std::array signals = {SIGINT, SIGTERM, SIGHUP};
+
 void on_signal(int) {
     signalled = true;
-    std::signal(SIGINT, SIG_DFL);
-    std::signal(SIGTERM, SIG_DFL);
+    for (const int signal : signals) std::signal(signal, SIG_DFL);
 }
 
 }  // namespace
 
 void catch_interrupts() {
-    std::signal(SIGINT, on_signal);
-    std::signal(SIGTERM, on_signal);
+    for (const int signal : signals) {
+        // Under nohup the end of the terminal stays without a meaning.
+        if (std::signal(signal, on_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
+    }
 }
 
 bool interrupted() { return signalled; }

@@ -3,7 +3,8 @@
 
 namespace vkcppm {
 
-/// From now on the first SIGINT or SIGTERM makes interrupted() true; the second ends the process.
+/// From now on the first SIGINT, SIGTERM or SIGHUP makes interrupted() true; the second ends the process. A SIGHUP that
+/// is ignored, as under nohup, stays so.
 void catch_interrupts();
 
 bool interrupted();

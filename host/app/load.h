@@ -7,8 +7,11 @@
 namespace vkcppm {
 
 /// Loads the file, puts the environment round it and makes thin glass solid where that is asked for. Scene::hash covers
-/// the environment too, and Scene::warnings ends with what diagnose() finds. Throws like load_gltf and
-/// read_environment.
+/// the environment too, as it is turned and scaled, and Scene::warnings ends with what diagnose() finds. Throws like
+/// load_gltf and read_environment, and Error(usage) where the environment's strength leads out of floats.
 Scene load_scene(const SceneOptions& options);
+
+/// Prints the warnings of the scene. Throws Error(bad_scene) where there are some and none is allowed.
+void tell_warnings(const Scene& scene, const SceneOptions& options);
 
 }  // namespace vkcppm

@@ -42,6 +42,12 @@ double parse_real(const std::string& option, const std::string& text) {
     return number;
 }
 
+double parse_factor(const std::string& option, const std::string& text) {
+    const double factor = parse_real(option, text);
+    if (factor < 0.0 || factor > std::numeric_limits<float>::max()) refuse(option, text, "a number of 0 or more");
+    return factor;
+}
+
 std::string parse_name(const std::string& option, const std::string& text) {
     if (text.empty()) refuse(option, text, "a name");  // an unset variable of a shell must not mean the default
     return text;

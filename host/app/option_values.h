@@ -24,6 +24,7 @@ struct StopAt {
 // Each throws like refuse() where the word is none.
 std::uint32_t parse_whole(const std::string& option, const std::string& text);
 double parse_real(const std::string& option, const std::string& text);
+double parse_factor(const std::string& option, const std::string& text);         // 0 or more, within floats
 std::string parse_name(const std::string& option, const std::string& text);      // not empty
 double parse_exposure(const std::string& option, const std::string& text);       // stops
 Extent parse_size(const std::string& option, const std::string& text);           // 512x384

@@ -116,11 +116,28 @@ void add_setting(CLI::App& app, Settings& settings, std::string_view name, const
 
 void add_scene(CLI::App& app, SceneOptions& scene) {
     app.add_option("SCENE", scene.file, "glTF 2.0 file, .gltf or .glb")->required()->type_name("");
+    app.add_option("--root", scene.root,
+                   "Folder that holds all files which the scene names, as by ../textures/x.png; what lies outside is\n"
+                   "not read (default: the folder above the scene's)")
+        ->type_name("DIR");
+    add(app, "--animation", "NAME|INDEX|all", scene.animation, parse_name,
+        "Put nodes, joints and morph targets where this animation has them (default: at rest)");
+    add(app, "--at", "SECONDS", scene.at, parse_real, "At this time of the animation (default: 0)")
+        ->needs("--animation");
+    add(app, "--variant", "NAME|INDEX", scene.variant, parse_name,
+        "Materials of this variant (KHR_materials_variants)");
     app.add_option("--environment", scene.environment,
                    "Light from outside: a picture of all directions, EXR or Radiance")
         ->type_name("FILE.exr|.hdr");
+    add(app, "--environment-rotation", "DEGREES", scene.environment_rotation, parse_real,
+        "Turn it about the vertical, counter-clockwise seen from above (default: 0)")
+        ->needs("--environment");
+    add(app, "--environment-strength", "X", scene.environment_strength, parse_factor,
+        "Multiply its radiance by this (default: 1)")
+        ->needs("--environment");
     add(app, "--thin-glass", "thin|solid", scene.thin_glass, parse_thin_glass,
         "Glass without a volume thickness: thin-walled, or solid where its mesh is closed (default: thin)");
+    app.add_flag("--strict", scene.strict, "Warnings about the scene end the program, with exit code 65");
 }
 
 void add_device(CLI::App& app, Device::Options& device) {
@@ -327,6 +344,8 @@ void declare(CLI::App& app, InfoOptions& options) {
 
 void declare(CLI::App& app, DevicesOptions& options) { app.add_flag("--json", options.json, "Print JSON"); }
 
+void declare(CLI::App& app, DoctorOptions& options) { app.add_flag("--json", options.json, "Print JSON"); }
+
 template <typename T> void finish(const CLI::App&, const Words&, T&) {}
 
 /// A row of the table of commands.
@@ -386,8 +405,8 @@ constexpr std::array commands{
     command<RenderOptions>(
         "",
         "Renders a glTF scene by progressive photon mapping on a Vulkan device.\n"
-        "Other commands: vkcppm race, vkcppm reference, vkcppm compare, vkcppm info, vkcppm devices; each has its\n"
-        "own --help.\n"
+        "Other commands: vkcppm race, vkcppm reference, vkcppm compare, vkcppm info, vkcppm devices, vkcppm doctor;\n"
+        "each has its own --help.\n"
         "A scene of such a name is given as ./compare."),
     command<RaceOptions>(
         "race",
@@ -400,6 +419,7 @@ constexpr std::array commands{
     command<CompareOptions>("compare", "Compares a picture with its reference."),
     command<InfoOptions>("info", "Lists what is in a scene and how it will be treated."),
     command<DevicesOptions>("devices", "Lists the Vulkan devices."),
+    command<DoctorOptions>("doctor", "Tells what a render hangs on and, where something is amiss, how to mend it."),
 };
 
 }  // namespace

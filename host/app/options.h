@@ -18,8 +18,15 @@ namespace vkcppm {
 /// The scene and what is done to it before anything else.
 struct SceneOptions {
     std::filesystem::path file;
+    std::optional<std::filesystem::path> root;         // what the file names lies below
+    std::string animation;                             // by name or index, or "all"; empty: at rest
+    double at = 0.0;                                   // s, of the animation
+    std::string variant;                               // by name or index; empty: none
     std::optional<std::filesystem::path> environment;  // EXR or Radiance
+    double environment_rotation = 0.0;                 // degrees about the vertical, counter-clockwise from above
+    double environment_strength = 1.0;                 // a factor of its radiance
     ThinGlass thin_glass = ThinGlass::thin;
+    bool strict = false;  // warnings of the scene are errors
 };
 
 /// vkcppm SCENE ...
@@ -87,21 +94,26 @@ struct DevicesOptions {
     bool json = false;
 };
 
+/// vkcppm doctor
+struct DoctorOptions {
+    bool json = false;
+};
+
 /// --help and --version
 struct TextOptions {
     std::string text;
 };
 
 using Options = std::variant<RenderOptions, RaceOptions, ReferenceOptions, CompareOptions, InfoOptions, DevicesOptions,
-                             TextOptions>;
+                             DoctorOptions, TextOptions>;
 
 /// Iterations where --time is given and --iterations is not.
 inline constexpr std::uint32_t unbounded_iterations = max_iterations;
 inline constexpr std::uint32_t unbounded_samples = 1u << 24;  // of ReferenceSettings, likewise
 
 /// Reads the command line; argv[0] is the program. The first word chooses the command where it is race, reference,
-/// compare, info or devices, and is the scene otherwise. Throws Error(usage) with the option, its value and what it
-/// takes.
+/// compare, info, devices or doctor, and is the scene otherwise. Throws Error(usage) with the option, its value and
+/// what it takes.
 Options parse_options(int argc, const char* const* argv);
 
 /// What --help says of an option, in parts.

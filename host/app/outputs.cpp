@@ -1,6 +1,10 @@
 #include "app/outputs.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
+#include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -9,20 +13,57 @@
 
 namespace vkcppm {
 namespace fs = std::filesystem;
+namespace {
 
-void check_outputs(const std::vector<std::optional<fs::path>>& inputs, const std::vector<Output>& outputs) {
+/// Endings by which programs tell formats: a file of one format that is called like another is taken for broken.
+constexpr std::array<std::string_view, 22> known_endings = {
+    ".exr", ".png", ".json", ".jpg", ".jpeg", ".hdr",  ".tif", ".tiff", ".bmp",  ".tga",   ".gif",
+    ".pfm", ".ppm", ".webp", ".pdf", ".svg",  ".gltf", ".glb", ".bin",  ".html", ".blend", ".csv"};
+
+std::string ending_of(const fs::path& file) {
+    std::string ending = file.extension().string();
+    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return ending;
+}
+
+void check_ending(const Output& output) {
+    const std::string ending = ending_of(*output.file);
+    if (ending == output.ending || std::ranges::find(known_endings, ending) == known_endings.end()) return;
+    const std::string written = *output.ending ? fmt::format("a file of {}", output.ending) : "a format of its own";
+    throw Error(ExitCode::usage, fmt::format("{}: {} ends in {}, but {} is written", output.option,
+                                             output.file->string(), ending, written));
+}
+
+/// One name for a file whatever it is called: absolute, without links. Of a file that is not there yet the folder alone
+/// has links to follow, which weakly_canonical() does only where it is told of one.
+fs::path name_of(const fs::path& file) {
+    return is_standard_output(file) ? "/dev/stdout" : fs::weakly_canonical(fs::absolute(file));
+}
+
+}  // namespace
+
+bool is_same_file(const fs::path& a, const fs::path& b) { return name_of(a) == name_of(b); }
+
+void check_outputs(const std::vector<std::optional<fs::path>>& inputs, const std::vector<Output>& outputs,
+                   bool prints) {
     std::vector<fs::path> taken;
     for (const auto& input : inputs) {
-        if (input) taken.push_back(fs::weakly_canonical(*input));
+        if (input) taken.push_back(name_of(*input));
     }
-    for (const auto& [option, file] : outputs) {
-        if (!file) continue;
-        const fs::path canonical = fs::weakly_canonical(*file);
-        if (std::ranges::find(taken, canonical) != taken.end()) {
-            throw Error(ExitCode::usage, fmt::format("{}: {} is an input or another output", option, file->string()));
+    for (const Output& output : outputs) {
+        if (!output.file) continue;
+        const fs::path name = name_of(*output.file);
+        if (std::ranges::find(taken, name) != taken.end()) {
+            throw Error(ExitCode::usage,
+                        fmt::format("{}: {} is an input or another output", output.option, output.file->string()));
         }
-        taken.push_back(canonical);
-        check_writable(*file);
+        if (is_standard_output(*output.file) && (prints || !*output.ending)) {
+            throw Error(ExitCode::usage, fmt::format("{}: {} is standard output, which this is not written to",
+                                                     output.option, output.file->string()));
+        }
+        taken.push_back(name);
+        check_ending(output);
+        check_writable(*output.file);
     }
 }
 

@@ -21,6 +21,19 @@ const char* name_of(ThinGlass thin_glass) { return thin_glass == ThinGlass::soli
 Json json_of(const auto& value) { return value; }
 Json json_of(const Extent& size) { return fmt::format("{}x{}", size.width, size.height); }
 
+/// What of the scene was asked for beside its files, where that is not what is usual.
+Json chosen(const SceneOptions& options) {
+    Json json = Json::object();
+    if (!options.animation.empty()) {
+        json["animation"] = options.animation;
+        json["at"] = options.at;
+    }
+    if (!options.variant.empty()) json["variant"] = options.variant;
+    if (options.environment_rotation != 0.0) json["environment_rotation"] = options.environment_rotation;
+    if (options.environment_strength != 1.0) json["environment_strength"] = options.environment_strength;
+    return json;
+}
+
 }  // namespace
 
 std::string version() { return VKCPPM_VERSION; }
@@ -45,11 +58,19 @@ Json settings_json(const Settings& settings, const std::function<bool(setting::K
 }
 
 Json scene_json(const SceneOptions& options, const Scene& scene) {
-    return {{"file", scene.file.string()},
-            {"hash", hash_text(scene.hash)},
-            {"triangles", scene.triangles.size()},
-            {"environment", options.environment ? Json(options.environment->string()) : Json()},
-            {"thin_glass", name_of(options.thin_glass)}};
+    Json json{{"file", scene.file.string()},
+              {"hash", hash_text(scene.hash)},
+              {"triangles", scene.triangles.size()},
+              {"environment", options.environment ? Json(options.environment->string()) : Json()},
+              {"thin_glass", name_of(options.thin_glass)}};
+    json.update(chosen(options));
+    return json;
+}
+
+Json warnings_json(const Scene& scene, const std::vector<std::string>& of_the_render) {
+    Json json = scene.warnings;
+    for (const std::string& line : of_the_render) json.push_back(line);
+    return json;
 }
 
 ExrAttributes attributes_of(Json json, const SceneOptions& options, const Scene& scene, const Report& report) {
@@ -57,6 +78,7 @@ ExrAttributes attributes_of(Json json, const SceneOptions& options, const Scene&
     json["scene_hash"] = hash_text(scene.hash);
     if (options.environment) json["environment"] = options.environment->filename().string();
     json["thin_glass"] = name_of(options.thin_glass);
+    json.update(chosen(options));
     json["device"] = report.device;
     json["driver"] = report.driver;
     json["version"] = version();
@@ -112,6 +134,7 @@ std::string stats_json(const RenderOptions& options, const Scene& scene, const R
     json["version"] = version();
     json["scene"] = scene_json(options.scene, scene);
     json["settings"] = settings_json(rendering.settings);
+    json["warnings"] = warnings_json(scene, rendering.warnings);
     json.update(report_json(rendering.report));
     if (options.reference) {
         json["reference"] = options.reference->string();

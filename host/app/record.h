@@ -25,6 +25,9 @@ nlohmann::ordered_json settings_json(
 /// The scene's file and hash, its triangles, and what was done to it.
 nlohmann::ordered_json scene_json(const SceneOptions& options, const Scene& scene);
 
+/// All that was warned of: about the scene, and while it was rendered.
+nlohmann::ordered_json warnings_json(const Scene& scene, const std::vector<std::string>& of_the_render);
+
 /// What a run did: device, driver, totals, passes [{name, calls, device_seconds}] and, of a render, memory [{of, count,
 /// bytes_each, bytes}].
 nlohmann::ordered_json report_json(const Report& report);

@@ -37,10 +37,11 @@ Reference refine_with_progress(const Scene& scene, const ReferenceOptions& optio
 
 void execute(const ReferenceOptions& options) {
     catch_interrupts();
-    check_outputs({options.scene.file, options.scene.environment},
-                  {{"-o", options.output}, {"--stats", options.stats}});
+    const std::vector<Output> outputs = {{"-o", options.output, ".exr"}, {"--stats", options.stats, ".json"}};
+    check_outputs({options.scene.file, options.scene.environment}, outputs, true);
     const Scene scene = load_scene(options.scene);
-    print_warnings(scene.warnings);
+    check_outputs({scene.inputs.begin(), scene.inputs.end()}, outputs, true);
+    tell_warnings(scene, options.scene);
     resolve_reference(options.settings, scene);  // a bad value is told before the device is asked for
     Device device(options.device);
     const PipelineCache cache(device, options.device.cache);

@@ -66,6 +66,7 @@ std::string reference_json(const ReferenceOptions& options, const Scene& scene, 
     json["scene"] = scene_json(options.scene, scene);
     json["settings"] = reference_settings_json(reference.settings);
     json["error"] = error_json(reference);
+    json["warnings"] = warnings_json(scene, reference.warnings);
     if (stats) json.update(report_json(reference.report));
     return json_text(json, 2) + "\n";
 }

@@ -132,6 +132,16 @@ Rendering render_with_progress(const Scene& scene, const RenderOptions& options,
     return rendering;
 }
 
+/// A PNG that is mostly white says nothing, and the exposure that it needs is hard to guess.
+void warn_of_clipping(const fs::path& png, double exposure, Rendering& rendering) {
+    const Clipping clipping = clipping_of(rendering.image, exposure);
+    if (clipping.share <= 0.5) return;
+    rendering.warnings.push_back(
+        fmt::format("{}: {:.0f} % of its pixels are brighter than white; --exposure {:.1f} shows "
+                    "most of them",
+                    png.string(), 100.0 * clipping.share, clipping.exposure));
+}
+
 void write_outputs(const RenderOptions& options, const Scene& scene, const Rendering& rendering) {
     const auto say_wrote = [&](const fs::path& file) {
         if (!options.quiet) print_message("wrote " + file.string());
@@ -164,16 +174,17 @@ void print_table(const Report& report) {
 
 void execute(const RenderOptions& options) {
     catch_interrupts();
-    const bool keeps_elsewhere =
-        options.resume && fs::weakly_canonical(*options.resume) != fs::weakly_canonical(*options.checkpoint);
+    const bool keeps_elsewhere = options.resume && !is_same_file(*options.resume, *options.checkpoint);
+    const std::vector<Output> outputs = {{"-o", options.output, ".exr"},
+                                         {"--png", options.png, ".png"},
+                                         {"--stats", options.stats, ".json"},
+                                         {"--checkpoint", options.checkpoint, ""}};
     check_outputs({options.scene.file, options.scene.environment, options.reference,
                    keeps_elsewhere ? options.resume : std::nullopt},
-                  {{"-o", options.output},
-                   {"--png", options.png},
-                   {"--stats", options.stats},
-                   {"--checkpoint", options.checkpoint}});
+                  outputs, options.hash);
     const Scene scene = load_scene(options.scene);
-    print_warnings(scene.warnings);
+    check_outputs({scene.inputs.begin(), scene.inputs.end()}, outputs, options.hash);
+    tell_warnings(scene, options.scene);
     // Bad values and references are told before the device is asked for.
     const Settings settings = resolve_settings(options.settings, scene);
     const std::optional<Measuring> measuring = read_measuring(options, *settings.size);
@@ -197,8 +208,9 @@ void execute(const RenderOptions& options) {
             keeper->keep(iterations, take);
         };
     }
-    const Rendering rendering =
+    Rendering rendering =
         render_with_progress(scene, options, measuring ? &*measuring : nullptr, checkpointing, device);
+    if (options.png) warn_of_clipping(*options.png, options.exposure, rendering);
     print_warnings(rendering.warnings);
     if (options.hash) {
         print_result(fmt::format("picture {}\n", hash_text(hash_of(rendering.image))));

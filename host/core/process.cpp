@@ -4,6 +4,7 @@
 #include <fstream>
 #include <limits>
 #include <string>
+#include <thread>
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -38,6 +39,24 @@ std::uint64_t available_memory() {
         meminfo.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
     }
     return std::numeric_limits<std::uint64_t>::max();
+}
+
+std::string processor() {
+    std::ifstream cpuinfo("/proc/cpuinfo");
+    std::string name = "unknown", flags;
+    for (std::string line; std::getline(cpuinfo, line) && flags.empty();) {
+        const std::size_t colon = line.find(": ");
+        if (colon == std::string::npos) continue;
+        if (line.starts_with("model name")) name = line.substr(colon + 2);
+        if (line.starts_with("flags")) flags = line.substr(colon + 1) + " ";
+    }
+    std::string text = name + ", " + std::to_string(std::thread::hardware_concurrency()) + " threads";
+    if (flags.empty()) return text;
+    for (const char* flag : {"fma", "avx2"}) {
+        text += flags.find(std::string(" ") + flag + " ") == std::string::npos ? ", without " : ", with ";
+        text += flag;
+    }
+    return text;
 }
 
 std::uint64_t peak_memory() {

@@ -1,6 +1,7 @@
 #include "flat/lights.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -66,6 +67,9 @@ void add_punctual_lights(const Scene& scene, const FlatScene& flat, std::vector<
         const glm::dvec3 intensity(source.intensity);
         light.position = glm::vec3(flat.frame.point(source.position));
         light.e1 = glm::vec3(source.direction);
+        // Not 0, which would be without end.
+        const float range = source.range > 0.0 ? std::max(FLT_MIN, float(source.range * flat.frame.scale)) : 0.0f;
+        light.e2 = glm::vec3(0.0f, 0.0f, range);
         switch (source.kind) {
             case PunctualLight::Kind::point:
                 light.kind = LIGHT_POINT;
@@ -74,7 +78,7 @@ void add_punctual_lights(const Scene& scene, const FlatScene& flat, std::vector<
             case PunctualLight::Kind::spot: {
                 light.kind = LIGHT_SPOT;
                 const double inner = versine(source.inner_cone), outer = versine(source.outer_cone);
-                light.e2 = glm::vec3(inner, outer, 0.0);
+                light.e2 = glm::vec3(inner, outer, range);
                 // Integral of clamp((outer - v) / (outer - inner), 0, 1)^2 over the sphere.
                 light.power = glm::vec3(intensity * (2.0 * pi * scale2 * (inner + (outer - inner) / 3.0)));
                 break;

@@ -35,6 +35,17 @@ fs::path replaceable(const fs::path& file) {
     return fs::canonical(file);
 }
 
+void write_all(int descriptor, std::string_view bytes, const fs::path& file) {
+    while (!bytes.empty()) {
+        const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+        if (written >= 0) {
+            bytes.remove_prefix(std::size_t(written));
+        } else if (errno != EINTR) {
+            fail_with_errno(file);
+        }
+    }
+}
+
 /// An open temporary file beside its target; removed on destruction unless committed.
 class Part {
 public:
@@ -50,16 +61,7 @@ public:
         if (!committed_) ::unlink(part_.c_str());
     }
 
-    void write(std::string_view bytes) {
-        while (!bytes.empty()) {
-            const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
-            if (written >= 0) {
-                bytes.remove_prefix(std::size_t(written));
-            } else if (errno != EINTR) {
-                fail_with_errno(file_);
-            }
-        }
-    }
+    void write(std::string_view bytes) { write_all(descriptor_, bytes, file_); }
 
     void commit() {
         // Without it a loss of power may leave the new name to a file without its bytes.
@@ -82,12 +84,20 @@ private:
 
 void write_file(const fs::path& file, std::string_view bytes) { write_file(file, {bytes}); }
 
+bool is_standard_output(const fs::path& file) { return file == "-" || file == "/dev/stdout"; }
+
 void write_file(const fs::path& file, std::initializer_list<std::string_view> parts) {
+    if (is_standard_output(file)) {
+        for (const std::string_view bytes : parts) write_all(STDOUT_FILENO, bytes, file);
+        return;
+    }
     Part part(file);
     for (const std::string_view bytes : parts) part.write(bytes);
     part.commit();
 }
 
-void check_writable(const fs::path& file) { Part part(file); }
+void check_writable(const fs::path& file) {
+    if (!is_standard_output(file)) Part part(file);
+}
 
 }  // namespace vkcppm

@@ -7,6 +7,10 @@
 
 namespace vkcppm {
 
+/// Whether the name means standard output, "-" or "/dev/stdout": it is then written to as it is, neither whole nor
+/// replaced.
+bool is_standard_output(const std::filesystem::path& file);
+
 /// Writes `bytes` to a temporary file in the same folder and renames it to `file`, so that `file` holds either what it
 /// held before or all of `bytes`. A symbolic link stays a link: what it points to is replaced.
 /// Throws Error(cannot_write) with the file and the reason, after removing the temporary file.

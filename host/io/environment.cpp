@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include "core/error.h"
 #include "core/fnv1a.h"
@@ -45,26 +46,57 @@ Image decode(const std::vector<std::uint8_t>& bytes, const fs::path& file) {
     throw Error(ExitCode::bad_scene, file.string() + ": is neither an OpenEXR nor a Radiance picture");
 }
 
-void check(const Image& image, const fs::path& file) {
-    const Extent& size = image.extent;
+std::string shown(const Image& image, std::size_t i) {
+    const glm::vec3& v = image.rgb[i];
+    return fmt::format("pixel ({}, {}) is ({:g}, {:g}, {:g})", i % image.extent.width, i / image.extent.width, v.r, v.g,
+                       v.b);
+}
+
+/// Takes what is negative for 0, with a warning: sharpening, another gamut and lossy compression leave such pixels.
+void mend(Image& image, const fs::path& file, std::vector<std::string>& warnings) {
+    std::size_t mended = 0;
+    std::string first;
     for (std::size_t i = 0; i < image.rgb.size(); ++i) {
-        const glm::vec3& v = image.rgb[i];
-        const auto is_radiance = [](float x) { return x >= 0.0f && std::isfinite(x); };
-        if (is_radiance(v.r) && is_radiance(v.g) && is_radiance(v.b)) continue;
-        throw Error(ExitCode::bad_scene,
-                    fmt::format("{}: pixel ({}, {}) is ({:g}, {:g}, {:g}); radiance must be finite and not negative",
-                                file.string(), i % size.width, i / size.width, v.r, v.g, v.b));
+        glm::vec3& v = image.rgb[i];
+        if (!(std::isfinite(v.r) && std::isfinite(v.g) && std::isfinite(v.b))) {
+            throw Error(ExitCode::bad_scene,
+                        fmt::format("{}: {}; radiance must be finite", file.string(), shown(image, i)));
+        }
+        if (v.r >= 0.0f && v.g >= 0.0f && v.b >= 0.0f) continue;
+        if (mended++ == 0) first = shown(image, i);
+        v = glm::max(v, glm::vec3(0.0f));
     }
+    if (mended == 0) return;
+    const std::string more = mended > 1 ? fmt::format(" (and {} more)", mended - 1) : "";
+    warnings.push_back(fmt::format("{}: {}{}: negative radiance is taken as 0", file.string(), first, more));
 }
 
 }  // namespace
 
-Image read_environment(const fs::path& file, std::uint64_t& hash) {
+Image read_environment(const fs::path& file, std::uint64_t& hash, std::vector<std::string>& warnings) {
     const std::vector<std::uint8_t> bytes = read_bytes(file);
     Image image = decode(bytes, file);
-    check(image, file);
+    mend(image, file, warnings);
     hash = fnv1a(bytes, hash);
     return image;
+}
+
+Image turned(const Image& image, double degrees) {
+    const auto [width, height] = image.extent;
+    const double turns = degrees / 360.0 - std::floor(degrees / 360.0);
+    const double columns = (1.0 - turns) * width;  // towards higher ones
+    const auto whole = std::uint32_t(columns);
+    const auto share = float(columns - whole);
+    Image result = image;
+    for (std::uint32_t y = 0; y < height; ++y) {
+        const std::size_t row = std::size_t(y) * width;
+        for (std::uint32_t x = 0; x < width; ++x) {
+            const std::uint32_t from = (x + 2 * width - whole % width) % width, before = (from + width - 1) % width;
+            result.rgb[row + x] =
+                share == 0.0f ? image.rgb[row + from] : glm::mix(image.rgb[row + from], image.rgb[row + before], share);
+        }
+    }
+    return result;
 }
 
 }  // namespace vkcppm

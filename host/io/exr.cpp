@@ -15,6 +15,7 @@
 #include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
+#include <fmt/format.h>
 
 #include "core/error.h"
 #include "io/atomic_file.h"
@@ -40,23 +41,53 @@ std::int64_t width(const Imath::Box2i& window) { return std::int64_t(window.max.
 
 std::int64_t height(const Imath::Box2i& window) { return std::int64_t(window.max.y) - window.min.y + 1; }
 
+/// The channels that are red, green and blue: R, G and B, else those of the one layer that has them, else Y for all.
+std::array<std::string, 3> rgb_channels(const Imf::ChannelList& channels, const fs::path& file) {
+    const auto of_layer = [](const std::string& prefix) {
+        return std::array{prefix + "R", prefix + "G", prefix + "B"};
+    };
+    const auto has = [&](const std::array<std::string, 3>& names) {
+        return std::ranges::all_of(names, [&](const std::string& name) { return channels.findChannel(name); });
+    };
+    if (has(of_layer(""))) return of_layer("");
+    std::vector<std::string> layers;
+    for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
+        const std::string name = channel.name();
+        if (!name.ends_with(".R")) continue;
+        const std::string prefix = name.substr(0, name.size() - 1);
+        if (has(of_layer(prefix))) layers.push_back(prefix);
+    }
+    if (layers.size() == 1) return of_layer(layers.front());
+    if (layers.size() > 1) {
+        fail_to_read(file, fmt::format("it has {} layers of R, G and B ('{}', '{}', ...), one is read", layers.size(),
+                                       layers[0], layers[1]));
+    }
+    for (const char* name : {"R", "G", "B"}) {
+        // Beside RY and BY, chroma, Y alone would show a colour picture in grey.
+        const bool is_grey = channels.findChannel("Y") && !channels.findChannel("RY") && !channels.findChannel("R");
+        if (!channels.findChannel(name) && !is_grey) fail_to_read(file, std::string("it has no channel ") + name);
+    }
+    return {"Y", "Y", "Y"};
+}
+
 Image read_rgb(const fs::path& file) {
     Imf::InputFile input(file.c_str(), no_worker_threads);
     const Imath::Box2i data = input.header().dataWindow();
     const Imath::Box2i display = input.header().displayWindow();
-    for (const char* name : {"R", "G", "B"}) {
-        if (!input.header().channels().findChannel(name)) fail_to_read(file, std::string("it has no channel ") + name);
-    }
-
+    const std::array<std::string, 3> names = rgb_channels(input.header().channels(), file);
     std::vector<glm::vec3> pixels(std::size_t(width(data) * height(data)));
     const std::size_t pixel_stride = sizeof(glm::vec3);
     const std::size_t row_stride = pixel_stride * std::size_t(width(data));
     Imf::FrameBuffer frame;
-    for (int c = 0; const char* name : {"R", "G", "B"}) {
-        frame.insert(name, Imf::Slice::Make(Imf::FLOAT, &pixels[0][c++], data, pixel_stride, row_stride));
+    const bool is_grey = names[0] == names[1];
+    for (int c = 0; c < (is_grey ? 1 : 3); ++c) {
+        frame.insert(names[c], Imf::Slice::Make(Imf::FLOAT, &pixels[0][c], data, pixel_stride, row_stride));
     }
     input.setFrameBuffer(frame);
     input.readPixels(data.min.y, data.max.y);
+    if (is_grey) {
+        for (glm::vec3& pixel : pixels) pixel = glm::vec3(pixel.r);
+    }
 
     Image image;
     image.extent = {std::uint32_t(width(display)), std::uint32_t(height(display))};

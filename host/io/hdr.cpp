@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -25,13 +26,17 @@ public:
 
     Image read(std::size_t most_pixels) {
         const glm::dvec3 exposure = read_header();
-        Image image{read_size(most_pixels), {}};
-        image.rgb.reserve(image.extent.pixels());
-        std::vector<Rgbe> row(image.extent.width);
-        for (row_ = 0; row_ < image.extent.height; ++row_) {
+        const auto [rows, columns] = read_size(most_pixels);
+        Image image{{columns.length, rows.length}, {}};
+        if (rows.name == 'X') std::swap(image.extent.width, image.extent.height);
+        image.rgb.resize(image.extent.pixels());
+        std::vector<Rgbe> row(columns.length);
+        for (row_ = 0; row_ < rows.length; ++row_) {
             read_row(row);
-            for (const Rgbe& pixel : row) {
-                image.rgb.emplace_back(radiance(pixel) / exposure);
+            for (std::uint32_t i = 0; i < columns.length; ++i) {
+                std::uint32_t x = columns.place(i), y = rows.place(row_);
+                if (rows.name == 'X') std::swap(x, y);
+                image.rgb[std::size_t(y) * image.extent.width + x] = radiance(row[i]) / exposure;
             }
         }
         return image;
@@ -97,27 +102,42 @@ private:
         return exposure;
     }
 
-    /// "-Y <height> +X <width>"
-    Extent read_size(std::size_t most_pixels) {
+    /// One of the two directions of the picture as they are stored.
+    struct Axis {
+        char name = 'X';        // or 'Y', which points upwards
+        bool descends = false;  // from its highest pixel on: "-Y" begins at the top
+        std::uint32_t length = 0;
+
+        /// The column, or the row from the top, of the i-th pixel along it.
+        std::uint32_t place(std::uint32_t i) const { return (name == 'Y') == descends ? i : length - 1 - i; }
+    };
+
+    /// Rows and columns as they are stored: "-Y <height> +X <width>", or any other of the eight orders.
+    std::pair<Axis, Axis> read_size(std::size_t most_pixels) {
         const std::string line = take_line();
-        const auto take_side = [&](std::string_view& text, std::string_view axis, std::uint32_t& side) {
-            if (!text.starts_with(axis)) return false;
-            text.remove_prefix(axis.size());
-            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), side);
+        const auto take_axis = [&](std::string_view& text, Axis& axis) {
+            if (text.size() < 3 || (text[0] != '-' && text[0] != '+') || (text[1] != 'X' && text[1] != 'Y'))
+                return false;
+            axis.descends = text[0] == '-';
+            axis.name = text[1];
+            text.remove_prefix(std::min(text.find_first_not_of(' ', 2), text.size()));
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), axis.length);
             text.remove_prefix(std::size_t(end - text.data()));
-            return error == std::errc() && side > 0;
+            text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+            return error == std::errc() && axis.length > 0;
         };
         std::string_view text = line;
-        Extent size;
-        if (!take_side(text, "-Y ", size.height) || !take_side(text, " +X ", size.width) ||
+        Axis rows, columns;
+        if (!take_axis(text, rows) || !take_axis(text, columns) || rows.name == columns.name ||
             !(text.empty() || text == "\r")) {
-            fail(fmt::format("its size is '{}'; this program reads -Y HEIGHT +X WIDTH", shown(line)));
+            fail(fmt::format("its size is '{}'; this program reads -Y HEIGHT +X WIDTH and its like", shown(line)));
         }
+        const Extent size{columns.length, rows.length};
         if (size.pixels() > most_pixels) {
             fail(fmt::format("it is {}x{} pixels, more than {} in all; scale it down", size.width, size.height,
                              most_pixels));
         }
-        return size;
+        return {rows, columns};
     }
 
     void read_row(std::vector<Rgbe>& row) {

@@ -1,7 +1,10 @@
 #include "io/png.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include <png.h>
 
@@ -21,6 +24,17 @@ Bitmap to_bitmap(const Image& image, double exposure) {
         bitmap.rgb.push_back(encoded);
     }
     return bitmap;
+}
+
+Clipping clipping_of(const Image& image, double exposure) {
+    std::vector<float> largest;
+    for (const glm::vec3& pixel : image.rgb) largest.push_back(std::max({0.0f, pixel.r, pixel.g, pixel.b}));
+    if (largest.empty()) return {};
+    const double white = std::exp2(-exposure);
+    const auto clipped = std::ranges::count_if(largest, [&](float x) { return x > white; });
+    const auto rank = largest.begin() + std::ptrdiff_t(0.95 * double(largest.size() - 1));
+    std::ranges::nth_element(largest, rank);
+    return {double(clipped) / double(largest.size()), *rank > 0.0f ? std::floor(-10.0 * std::log2(*rank)) / 10.0 : 0.0};
 }
 
 std::string encode_png(const Bitmap& bitmap) {

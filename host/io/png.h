@@ -11,6 +11,14 @@ namespace vkcppm {
 /// `image` times 2^exposure, clamped to [0, 1] and encoded as 8-bit sRGB; NaN becomes black. exposure: stops.
 Bitmap to_bitmap(const Image& image, double exposure = 0.0);
 
+/// How many pixels of a picture have a channel above 1 at an exposure, in stops, and at which exposure a twentieth of
+/// them would.
+struct Clipping {
+    double share = 0.0;
+    double exposure = 0.0;  // stops, rounded down to tenths
+};
+Clipping clipping_of(const Image& image, double exposure);
+
 /// The bytes of a PNG file.
 std::string encode_png(const Bitmap& bitmap);
 

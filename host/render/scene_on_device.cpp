@@ -25,7 +25,7 @@ double empty_depth(const glm::dvec3& eye, const glm::dvec3& forward) {
 }
 
 void set_camera(gpu::Params& params, const Camera& camera, const SceneFrame& frame, Extent size) {
-    const double half_height = std::tan(0.5 * camera.yfov);
+    const double half_height = camera.ymag ? *camera.ymag * frame.scale : std::tan(0.5 * camera.yfov);
     const double half_width = half_height * double(size.width) / double(size.height);
     const glm::dvec3 eye = frame.point(glm::dvec3(camera.to_world[3])), forward = -glm::dvec3(camera.to_world[2]);
     const double start = empty_depth(eye, forward);
@@ -36,6 +36,7 @@ void set_camera(gpu::Params& params, const Camera& camera, const SceneFrame& fra
     params.forward = glm::vec3(forward);
     params.width = size.width;
     params.height = size.height;
+    params.orthographic = camera.ymag ? 1 : 0;
     params.pixel_radius = float(2.0 * half_height / double(size.height) / std::sqrt(std::numbers::pi));
 }
 
@@ -109,7 +110,7 @@ gpu::Params scene_params(const Device& device, const FlatScene& scene, const Cam
     params.local_power = float(scene.local_power);
     params.environment_power = float(scene.environment_power);
     params.environment = {scene.environment_size.width, scene.environment_size.height};
-    params.lens_radius = float(0.5 * settings.aperture * scene.frame.scale);
+    params.lens_radius = float(0.5 * lens_diameter(settings, camera) * scene.frame.scale);
     params.focus_distance = float(settings.focus_distance.value_or(1.0) * scene.frame.scale);
     params.step_budget = device.step_budget();
     return params;

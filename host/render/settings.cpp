@@ -53,13 +53,19 @@ void check(const std::string& option, const std::string& word, const setting::Wo
         throw Error(ExitCode::usage, fmt::format("{} '{}' is none of {}", option, word, fmt::join(names, ", ")));
 }
 
-/// Index of the camera that `wanted` names: by name, else by index; empty is the first.
+/// Index of the camera that `wanted` names: by its name, else by that of its node, else by index; empty is the first.
 std::size_t find_camera(const std::string& wanted, const Scene& scene) {
     if (wanted.empty()) return 0;
     std::vector<std::string> names;
+    for (const auto name : {&Camera::name, &Camera::node}) {
+        const auto found = std::ranges::find(scene.cameras, wanted, name);
+        if (found != scene.cameras.end()) return std::size_t(found - scene.cameras.begin());
+    }
     for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
-        if (scene.cameras[i].name == wanted) return i;
-        names.push_back(fmt::format("{} '{}'", i, scene.cameras[i].name));
+        const Camera& camera = scene.cameras[i];
+        const bool says_more = !camera.node.empty() && camera.node != camera.name;
+        names.push_back(
+            fmt::format("{} '{}'{}", i, camera.name, says_more ? fmt::format(" of '{}'", camera.node) : ""));
     }
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
@@ -78,12 +84,18 @@ Extent default_size(const Camera& camera) {
 }
 
 /// A lens has an opening and a distance at which it is sharp, or neither.
-void check_lens(double aperture, const std::optional<double>& focus_distance) {
-    if (aperture > 0.0 && !focus_distance)
-        throw Error(ExitCode::usage, fmt::format("--aperture {} needs --focus-distance", aperture));
-    if (focus_distance && aperture == 0.0) {
+void check_lens(const Settings& settings, const Camera& camera) {
+    if (settings.fstop && settings.aperture > 0.0)
+        throw Error(ExitCode::usage, "--fstop and --aperture exclude one another");
+    if (settings.fstop && camera.ymag)
+        throw Error(ExitCode::usage, "--fstop needs a perspective camera; --aperture tells the diameter");
+    const char* opening = settings.fstop ? "--fstop" : "--aperture";
+    const double value = settings.fstop.value_or(settings.aperture);
+    if (value > 0.0 && !settings.focus_distance)
+        throw Error(ExitCode::usage, fmt::format("{} {} needs --focus-distance", opening, value));
+    if (settings.focus_distance && value == 0.0) {
         throw Error(ExitCode::usage,
-                    fmt::format("--focus-distance {} needs --aperture greater than 0", *focus_distance));
+                    fmt::format("--focus-distance {} needs --aperture greater than 0", *settings.focus_distance));
     }
 }
 
@@ -103,21 +115,32 @@ Settings resolve_settings(const Settings& settings, const Scene& scene) {
         if (const auto* value = setting::given(settings.*row.member))
             check(fmt::format("--{}", row.name), *value, row.values);
     });
-    check_lens(settings.aperture, settings.focus_distance);
     check_cells(find_estimator(settings.estimator), settings.sectors);
 
     Settings resolved = settings;
     const std::size_t camera = find_camera(settings.camera, scene);
     resolved.camera = std::to_string(camera);
     if (!settings.size) resolved.size = default_size(scene.cameras.at(camera));
+    check_lens(settings, scene.cameras.at(camera));
     return resolved;
+}
+
+double lens_diameter(const Settings& settings, const Camera& camera) {
+    if (!settings.fstop) return settings.aperture;
+    constexpr double half_film = 0.018;  // m, of the longer side
+    const auto [width, height] = *settings.size;
+    const double longer = std::max(1.0, double(width) / double(height));
+    return half_film / (std::tan(0.5 * camera.yfov) * longer) / *settings.fstop;
 }
 
 std::vector<Feature> features_of(const Settings& settings) {
     std::vector<Feature> features;
     if (settings.aovs) features.push_back(make_feature(FEATURE_AOVS, "--aovs"));
-    if (settings.aperture > 0.0)
+    if (settings.fstop) {
+        features.push_back(make_feature(FEATURE_LENS, fmt::format("--fstop {:g}", *settings.fstop)));
+    } else if (settings.aperture > 0.0) {
         features.push_back(make_feature(FEATURE_LENS, fmt::format("--aperture {:g}", settings.aperture)));
+    }
     if (settings.caustics) features.push_back(make_feature(FEATURE_SPLIT, "a reference"));
     if (!settings.caustics && settings.direct == direct_sampled)
         features.push_back(make_feature(FEATURE_DIRECT, fmt::format("--direct {}", direct_sampled)));

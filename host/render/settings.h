@@ -19,6 +19,10 @@ Settings resolve_settings(const Settings& settings, const Scene& scene);
 /// The camera of resolved settings, which hold its index.
 const Camera& camera_of(const Settings& settings, const Scene& scene);
 
+/// The diameter of the lens, m, of resolved settings: as it was asked for, or the focal length over the f-number, for a
+/// film of 36 mm on the picture's longer side.
+double lens_diameter(const Settings& settings, const Camera& camera);
+
 /// What the settings ask of the kernels.
 std::vector<Feature> features_of(const Settings& settings);
 

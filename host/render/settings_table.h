@@ -35,11 +35,15 @@ SETTING(size, std::optional<Extent>, std::nullopt, "size", picture, pixels(65536
 
 // Empty: the first; resolved: an index.
 SETTING(camera, std::string, "", "camera", view, any(), camera,
-        "Camera by name or index (default: the first)")
+        "Camera by its name, its node's or its index (default: the first)")
 
 // 0 is a pinhole.
 SETTING(aperture, double, 0.0, "aperture", view, within(0.0, longest), metres,
         "Diameter of the lens; what is not at --focus-distance is blurred (default: {}, all is sharp)")
+
+// Instead of an aperture.
+SETTING(fstop, std::optional<double>, std::nullopt, "fstop", view, within(0.01, 1e6), number,
+        "The lens by its f-number, of a camera whose film is 36 mm on its longer side")
 
 SETTING(focus_distance, std::optional<double>, std::nullopt, "focus-distance", view, within(1.0 / longest, longest),
         metres, "From the camera along its axis to what is sharp; goes with --aperture")

@@ -107,15 +107,18 @@ struct PunctualLight {
     glm::vec3 intensity{1.0f};               // color * intensity
     glm::dvec3 position{0.0};                // m; unused by directional
     glm::dvec3 direction{0.0, 0.0, -1.0};    // unit, where the light travels to; unused by point
+    double range = 0.0;                      // m, where a point or spot light ends; 0: nowhere
     double inner_cone = 0.0;                 // rad, spot only
     double outer_cone = 0.7853981633974483;  // rad, spot only
 };
 
-/// A perspective camera that looks along its local -z with +y up.
+/// A camera that looks along its local -z with +y up.
 struct Camera {
     std::string name;
+    std::string node;                  // the name of its node
     glm::dmat4 to_world{1.0};          // rigid: orthonormal columns and a position (scale removed)
-    double yfov = 0.7853981633974483;  // rad
+    double yfov = 0.7853981633974483;  // rad, perspective
+    std::optional<double> ymag;        // orthographic: half the height of what it sees, m
     std::optional<double> aspect;      // width / height, where the file states one
 };
 
@@ -131,6 +134,7 @@ struct Environment {
 /// file has any.
 struct Scene {
     std::filesystem::path file;
+    std::vector<std::filesystem::path> inputs;  // the file, all that it names, and the environment
     std::uint64_t hash = 0;             // FNV-1a of the file and of every buffer, image and environment it is lit by
     std::vector<glm::dvec3> positions;  // [V] m
     std::vector<glm::vec3> normals;     // [V] unit, shading

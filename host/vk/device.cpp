@@ -48,6 +48,11 @@ vk::raii::Instance make_instance(const vk::raii::Context& context, bool validate
     return vk::raii::Instance(context, info);
 }
 
+std::string version_text(std::uint32_t version) {
+    return fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),
+                       VK_API_VERSION_PATCH(version));
+}
+
 std::string type_name(vk::PhysicalDeviceType type) {
     switch (type) {
         case vk::PhysicalDeviceType::eDiscreteGpu: return "discrete";
@@ -122,9 +127,7 @@ DeviceInfo describe(const vk::raii::PhysicalDevice& physical, std::uint32_t inde
     info.name = properties.deviceName.data();
     info.type = type_name(properties.deviceType);
     info.driver = fmt::format("{} {}", driver.driverName.data(), driver.driverInfo.data());
-    info.api_version =
-        fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(properties.apiVersion),
-                    VK_API_VERSION_MINOR(properties.apiVersion), VK_API_VERSION_PATCH(properties.apiVersion));
+    info.api_version = version_text(properties.apiVersion);
     info.uuid = uuid_text(chain.get<vk::PhysicalDeviceIDProperties>().deviceUUID);
     const auto memory = physical.getMemoryProperties();
     for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
@@ -226,6 +229,20 @@ void run_once(Device& device, const std::string& doing, const std::function<void
     });
 }
 
+VulkanInfo vulkan_info() {
+    VulkanInfo info;
+    try {
+        const vk::raii::Context context;
+        info.loader = version_text(context.enumerateInstanceVersion());
+        info.has_validation_layer = std::ranges::any_of(
+            context.enumerateInstanceLayerProperties(),
+            [](const vk::LayerProperties& layer) { return std::strcmp(layer.layerName, validation_layer) == 0; });
+    } catch (const std::exception&) {
+        // No Vulkan loader.
+    }
+    return info;
+}
+
 std::vector<DeviceInfo> list_devices() {
     std::vector<DeviceInfo> list;
     try {
@@ -246,7 +263,7 @@ Device::Device(const Options& options) : impl_(std::make_unique<Impl>()) {
         throw Error(ExitCode::no_device,
                     fmt::format("validation was asked for but {} is not installed", validation_layer));
     } catch (const vk::SystemError& error) {
-        throw Error(ExitCode::no_device, fmt::format("no Vulkan instance: {}", error.what()));
+        throw Error(ExitCode::no_device, fmt::format("no Vulkan instance: {}; {}", error.what(), driver_advice));
     }
     if (options.validate) {
         using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
@@ -268,9 +285,9 @@ Device::Device(const Options& options) : impl_(std::make_unique<Impl>()) {
     });
     if (devices.empty()) {
         const std::string wanted = options.select.empty() ? "" : fmt::format(" that matches '{}'", options.select);
-        throw Error(ExitCode::no_device,
-                    fmt::format("no usable Vulkan device{}; there are: {}", wanted,
-                                names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+        throw Error(ExitCode::no_device, fmt::format("no usable Vulkan device{}; there are: {}", wanted,
+                                                     names.empty() ? fmt::format("none; {}", driver_advice)
+                                                                   : fmt::format("{}", fmt::join(names, ", "))));
     }
     auto best = std::min_element(devices.begin(), devices.end(), [](const auto& a, const auto& b) {
         return preference(a.second) < preference(b.second);

@@ -24,6 +24,17 @@ struct DeviceInfo {
     std::string unusable;            // empty, or why the device cannot run the kernels
 };
 
+/// What of Vulkan is installed beside the drivers.
+struct VulkanInfo {
+    std::string loader;  // version of the loader; empty: there is none
+    bool has_validation_layer = false;
+};
+VulkanInfo vulkan_info();
+
+/// What to install where there is no driver, a line.
+inline constexpr const char* driver_advice =
+    "install mesa-vulkan-drivers (Debian, Ubuntu, Fedora) or vulkan-swrast (Arch), which need no graphics card";
+
 /// All devices of all drivers, usable or not; empty where there is no Vulkan loader or driver.
 std::vector<DeviceInfo> list_devices();
 

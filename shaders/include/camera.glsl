@@ -19,6 +19,10 @@ void camera_ray(uint pixel, uint sequence, out vec3 origin, out vec3 direction, 
     vec2 film = 2.0 * raster / vec2(params.width, params.height) - 1.0;
     vec3 through = params.forward + film.x * params.right - film.y * params.up;
     vec3 eye = params.eye + params.start * (film.x * params.right - film.y * params.up);
+    if (params.orthographic != 0u) {
+        through = params.forward;
+        eye = params.eye + film.x * params.right - film.y * params.up;
+    }
     distance = params.start * length(through);
     if (HAS_LENS) {
         // A thin lens: what lies in the plane of focus is met by rays from all of it.
@@ -33,5 +37,8 @@ void camera_ray(uint pixel, uint sequence, out vec3 origin, out vec3 direction, 
     origin = enter_bounds(eye, direction);
     distance += length(origin - eye);
 }
+
+// Radius of the footprint of a pixel, `distance` from the eye along its ray; frame units.
+float footprint_at(float distance) { return params.pixel_radius * (params.orthographic != 0u ? 1.0 : distance); }
 
 #endif

@@ -115,7 +115,7 @@ void store(EyePath path) {
     }
     hit_position[path.pixel] = path.position;
     hit_weight[path.pixel] = path.weight;
-    hit_emission[path.pixel] = HitEmission(path.at.emission, path.at.distance * params.pixel_radius);
+    hit_emission[path.pixel] = HitEmission(path.at.emission, footprint_at(path.at.distance));
 }
 
 // ---- meet ----

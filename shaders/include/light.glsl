@@ -22,6 +22,19 @@ ASKED_LIGHTS(RECORDS)
 vec3 axis_of(Light light) { return light.e1; }
 vec2 cones_of(Light light) { return light.e2.xy; }
 
+// Of a point or spot light: the distance beyond which it sheds no light, frame units; 0: there is none.
+float range_of(Light light) { return light.e2.z; }
+
+// The share of the light of a point or spot light that gets so far (KHR_lights_punctual, Range Property).
+float share_within_range(float range, float distance) {
+    if (range == 0.0) return 1.0;
+    float squared = (distance / range) * (distance / range);
+    return max(0.0, 1.0 - squared * squared);
+}
+
+// How far a photon of such a light gets: beyond a distance in the share above. u in [0, 1).
+float sample_reach(float range, float u) { return range * sqrt(sqrt(1.0 - u)); }
+
 // The share of a textured light's factor that is emitted at a point of it: its texture, where the surface is there.
 vec3 emitted_share(Light light, vec2 b) {
     vec2 barycentric = (1.0 - b.x - b.y) * light.corner[0] + b.x * light.corner[1] + b.y * light.corner[2];
@@ -131,7 +144,7 @@ LightSample sample_light(AskedGroup group, uvec2 bits, vec2 v, vec3 position) {
         (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT)) {
         s.distance = length(towards);
         s.direction = towards / s.distance;
-        s.radiance = light.power / (s.distance * s.distance);
+        s.radiance = light.power * (share_within_range(range_of(light), s.distance) / (s.distance * s.distance));
         if (light.kind == LIGHT_POINT) {
             s.radiance /= 4.0 * PI;
         } else {
@@ -155,7 +168,8 @@ LightSample sample_light(AskedGroup group, uvec2 bits, vec2 v, vec3 position) {
 // light emits there, so that every path carries the same power at its start (but for what a texture varies within a
 // triangle, and entry_area within a pixel of the environment). bits: four random words; v: four numbers in [0, 1).
 // near: length from the light within which photons bring what is left to them of what it sends (include/direct.glsl,
-// include/split.glsl); 0 of lights of no area. Returns the kind of the light.
+// include/split.glsl); of a light with a range the negative of how far the photon gets; else 0. Returns the kind of the
+// light.
 uint emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 power, out float near) {
     vec4 u = unit_floats(bits);
     uint index;
@@ -180,12 +194,14 @@ uint emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 powe
     if (HAS_POINT_LIGHTS && light.kind == LIGHT_POINT) {
         direction = sample_azimuth(1.0 - 2.0 * v.x, v.y);
         origin = light.position;
+        near = -sample_reach(range_of(light), v.z);
     }
     if (HAS_SPOT_LIGHTS && light.kind == LIGHT_SPOT) {
         vec2 cones = cones_of(light);
         vec3 local = sample_cone(sample_spot_versine(cones.x, cones.y, v.x), v.y);
         direction = normalize(from_frame(axis_of(light), local));
         origin = light.position;
+        near = -sample_reach(range_of(light), v.z);
     }
     if (HAS_DIRECTIONAL_LIGHTS && light.kind == LIGHT_DIRECTIONAL) {
         direction = axis_of(light);

@@ -22,6 +22,8 @@
 #include "include/surface.glsl"
 #include "include/traverse.glsl"
 
+#define HAS_RANGES (HAS_POINT_LIGHTS || HAS_SPOT_LIGHTS)  // lights may have one
+
 PHOTONS(STORES)
 PHOTON_FLUX(STORES)
 PATHS(UPDATES)
@@ -36,6 +38,20 @@ float shading_correction(Surface surface, vec3 before, vec3 after) {
     return dot(before, surface.normal) * cos_geometric / (dot(before, surface.geometric) * cos_shading);
 }
 
+// What a light still reaches (PathState::near, negative) once its photon has gone `length`.
+float shorter(float near, float length) { return -max(1e-30, -near - length); }
+
+// Takes what the photon goes off its length; false where its light does not reach so far.
+bool gets_there(inout PathState state, float length) {
+    if (HAS_RANGES && state.near < 0.0 && (state.flags & PATH_DIRECT) != 0u) {
+        bool there = length < -state.near;
+        state.near = shorter(state.near, length);
+        return there;
+    }
+    state.near = max(0.0, state.near - length);
+    return true;
+}
+
 // Begins the path of the lane at a light.
 void begin_light_path(inout PathState state) {
     uint kind = emit(random_words(params.seed, launch.iteration, STREAM_PHOTON, state.path, 0u),
@@ -46,7 +62,9 @@ void begin_light_path(inout PathState state) {
     state.flags = PATH_OUTSIDE | PATH_DIRECT;
     state.media = NO_MEDIA;
     if (punctual) state.flags |= PATH_STRAIGHT;
-    state.origin = enter_bounds(state.origin, state.direction);
+    vec3 entry = enter_bounds(state.origin, state.direction);
+    if (HAS_RANGES && state.near < 0.0) state.near = shorter(state.near, distance(state.origin, entry));
+    state.origin = entry;
     state.power0 = largest(state.power);
 }
 
@@ -115,7 +133,7 @@ bool meet(inout PathState state, uint slot, Hit hit) {
     if (HAS_UNLIT && has(material, SURFACE_UNLIT)) bsdf = black();
     // What is black reflects no photon to any eye. Where a surface is partly there the photon counts in full: it tells
     // how much light arrives, and the eye path has asked for the surface.
-    state.near -= hit.t;
+    if (!gets_there(state, hit.t)) return false;
     bool brings = brings_light(state.flags);
     if (HAS_DIRECT) brings = (state.flags & PATH_DIRECT) == 0u || state.near > 0.0;
     if (brings && gathers_light(bsdf)) store_photon(state, slot, surface);

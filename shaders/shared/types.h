@@ -281,7 +281,7 @@ RECORD(TextureLookup)
     FIELD(uint, kind)          /* LIGHT_* */ \
     FIELD(vec3, e1)            /* triangle: edge; others: axis_of (include/light.glsl) */ \
     FIELD(float, keep)         /* alias table: probability to keep this entry */ \
-    FIELD(vec3, e2)            /* triangle: edge; spot: cones_of, 1 - cos of the inner and of the outer */ \
+    FIELD(vec3, e2)            /* triangle: edge; point, spot: range_of; spot: cones_of, 1 - cos of both angles */ \
     FIELD(uint, alias_entry)   /* alias table: the other entry */ \
     /* W (frame-scaled); directional, environment: into the scene; environment: the mean channel alone, times \
        the colour of the pixel drawn and entry_area over its mean in the pixel */ \
@@ -477,7 +477,9 @@ struct PathState {
     float power0;      // largest channel of the power at emission, for Russian roulette
     uint begin;        // stored before this path
     uint next;         // path that the SIMD group takes next
-    float near;        // length from its light within which photons bring direct light, less what it has gone
+    // Less what it has gone: > 0: the length from its light within which photons bring direct light; < 0: the negative
+    // of what its light reaches, while it goes straight on; 0: neither.
+    float near;
     uint met;          // surfaces
     uvec2 media;       // include/media.glsl
 };
@@ -550,12 +552,12 @@ struct Status {
 struct Params {
     vec3 eye;              // where the lens is, plus `start` along the axis
     uint width;
-    vec3 right;            // half of the image plane at distance 1
+    vec3 right;            // half of the image plane; of a perspective camera at distance 1
     uint height;
     vec3 up;
     uint seed;
     vec3 forward;          // unit
-    float pixel_radius;    // radius of a pixel's footprint at distance 1
+    float pixel_radius;    // radius of a pixel's footprint; of a perspective camera at distance 1
     vec3 bounds_low;       // of the triangles, padded
     uint photons;          // paths an iteration
     vec3 bounds_high;
@@ -576,6 +578,7 @@ struct Params {
     float lens_radius;     // frame units; at focus_distance along the axis a point is sharp
     float focus_distance;
     float start;           // depth at which eye rays begin, frame units: 0 but for an eye far from the scene
+    uint orthographic;     // 1: eye rays are parallel, 0: they meet in the eye
     uint step_budget;      // loop trips of one invocation of a resumable kernel
     uint knn;
     float radius_cap;      // largest starting radius

@@ -37,10 +37,10 @@ Table bench_instances(const Bench& bench) {
             const std::array<Sharing, 2> both = {Sharing::always, Sharing::never};
             for (int i = 0; i < 2; ++i) {
                 for (int run = 0; run < bench.runs; ++run) {
-                    load[i].keep(time_of([&] { flatten(load_gltf(folder / "scene.gltf", both[i])); }));
+                    load[i].keep(time_of([&] { flatten(load_gltf(folder / "scene.gltf", {.sharing = both[i]})); }));
                 }
-                renders.push_back(
-                    std::make_unique<Render>(*worker.device, load_gltf(folder / "scene.gltf", both[i]), settings));
+                renders.push_back(std::make_unique<Render>(
+                    *worker.device, load_gltf(folder / "scene.gltf", {.sharing = both[i]}), settings));
                 renders.back()->warm_up(4);
             }
             for (int run = 0; run < bench.runs; ++run) {

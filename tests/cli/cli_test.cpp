@@ -92,6 +92,22 @@ TEST_F(Cli, DevicesAreListed) {
     }
 }
 
+TEST_F(Cli, TheDoctorTellsWhatARenderHangsOn) {
+    const auto plain = run({"doctor"});
+    expect_done(plain);
+    for (const char* part : {"processor: ", "memory: ", "Vulkan loader: ", "device 0: ", "validation layer: "}) {
+        EXPECT_TRUE(contains(plain.out, part)) << part << " is not in: " << plain.out;
+    }
+    const Json json = Json::parse(run({"doctor", "--json"}).out);
+    EXPECT_EQ(json.at(0).at("what"), "program");
+    // A machine without a driver: the advice names a package.
+    const auto none = shell("VK_ICD_FILENAMES=/none.json VK_DRIVER_FILES=/none.json \"$0\" doctor");
+    EXPECT_EQ(none.exit_code, 69) << none.err;
+    EXPECT_TRUE(contains(none.out, "mesa-vulkan-drivers")) << none.out;
+    const auto render = shell("VK_ICD_FILENAMES=/none.json VK_DRIVER_FILES=/none.json \"$0\" \"$1\"");
+    expect_failure(render, 69, {"Vulkan", "mesa-vulkan-drivers"});
+}
+
 TEST_F(Cli, InfoTellsWhatIsInTheScene) {
     const auto result = run({"info", scene("point_plane"), "--json"});
     expect_done(result);
@@ -293,6 +309,23 @@ TEST_F(Cli, EveryMisuseHasItsExitCodeAndItsLine) {
         {{"-o", "/proc/out.exr"}, 73, {"/proc/out.exr"}},
         {{"-o", "/dev/null"}, 73, {"/dev/null"}},
         {{"-o", "."}, 73, {"folder"}},
+        {{"-o", "./p.exr", "--png", "p.exr"}, 2, {"--png", "p.exr", "another output"}},
+        {{"-o", "q.exr", "--stats", "./q.exr"}, 2, {"--stats", "q.exr", "another output"}},
+        {{"-o", "./w", "--checkpoint", "w"}, 2, {"--checkpoint", "w", "another output"}},
+        {{"-o", "o.png"}, 2, {"-o", "o.png", ".exr"}},
+        {{"-o", "o.TIFF"}, 2, {"-o", "o.TIFF", ".exr"}},
+        {{"--png", "p.exr"}, 2, {"--png", "p.exr", ".png"}},
+        {{"--stats", "s.png"}, 2, {"--stats", "s.png", ".json"}},
+        {{"--checkpoint", "c.exr"}, 2, {"--checkpoint", "c.exr", "a format of its own"}},
+        {{"-o", "-", "--png", "-"}, 2, {"--png", "-", "another output"}},
+        {{"-o", "-", "--stats", "/dev/stdout"}, 2, {"--stats", "/dev/stdout", "another output"}},
+        {{"-o", "-", "--hash"}, 2, {"-o", "standard output"}},
+        {{"--checkpoint", "-"}, 2, {"--checkpoint", "standard output"}},
+        {{"--at", "1"}, 2, {"--at", "--animation"}},
+        {{"--animation", "walk"}, 2, {"--animation 'walk'", "there are none"}},
+        {{"--variant", "red"}, 2, {"--variant 'red'", "there are none"}},
+        {{"--environment-strength", "2"}, 2, {"--environment-strength", "--environment"}},
+        {{"--root", "missing"}, 66, {"--root missing", "no such folder"}},
         {{"--png", "missing/out.png"}, 73, {"missing/out.png"}},
         {{"--size", "65536x65536"}, 2, {"--size", "4294967296 pixels", "2147483648"}},
         {{"--size", "65536x32768"},
@@ -306,6 +339,82 @@ TEST_F(Cli, EveryMisuseHasItsExitCodeAndItsLine) {
         expect_failure(run(words), misuse.code, misuse.told, shown(words));
         EXPECT_TRUE(test::names_in(folder_.path()).empty()) << shown(words) << " left a file behind";
     }
+}
+
+TEST_F(Cli, NothingThatASceneNamesIsWrittenOver) {
+    test::GltfBuilder builder = test::one_triangle();
+    builder.add("images", {{"uri", "unused.png"}});
+    test::write_bytes(folder_ / "s.gltf", builder.gltf_with_uri("data.exr"));
+    test::write_bytes(folder_ / "data.exr", builder.bytes());
+    test::write_bytes(folder_ / "unused.png", "a picture");
+    fs::create_directory_symlink(".", folder_ / "here");
+    const Words words{"s.gltf", "--size", "4x4", "--iterations", "1", "--photons", "16", "--quiet"};
+    for (const Words& outputs : std::vector<Words>{{"-o", "data.exr"},
+                                                   {"-o", "here/data.exr"},
+                                                   {"-o", "a.exr", "--png", "unused.png"},
+                                                   {"-o", "a.exr", "--checkpoint", "s.gltf"},
+                                                   {"-o", "a.exr", "--png", "here/a.exr"}}) {
+        Words all = words;
+        all.insert(all.end(), outputs.begin(), outputs.end());
+        expect_failure(run(all), 2, {outputs.back(), "is an input or another output"}, shown(all));
+        EXPECT_EQ(test::read_bytes(folder_ / "data.exr"), builder.bytes()) << shown(all);
+        EXPECT_EQ(test::read_bytes(folder_ / "unused.png"), "a picture") << shown(all);
+        EXPECT_FALSE(fs::exists(folder_ / "a.exr")) << shown(all);
+    }
+    expect_failure(run({"reference", "s.gltf", "-o", "data.exr", "--size", "4x4"}), 2, {"data.exr"}, "a reference");
+    fs::rename(folder_ / "unused.png", folder_ / "winner.png");
+    builder.document["images"][0]["uri"] = "winner.png";
+    test::write_bytes(folder_ / "s.gltf", builder.gltf_with_uri("data.exr"));
+    expect_failure(run({"race", "s.gltf", "-o", ".", "--size", "4x4", "--make-reference", "1s"}), 2, {"winner.png"},
+                   "a race");
+    EXPECT_EQ(test::read_bytes(folder_ / "winner.png"), "a picture");
+}
+
+TEST_F(Cli, APictureGoesIntoAPipeByADash) {
+    const std::string settings = " --size 16x12 --iterations 2 --photons 500 --quiet";
+    for (const char* name : {"-", "/dev/stdout"}) {
+        expect_done(shell(std::string("\"$0\" \"$1\" -o ") + name + settings + " --stats s.json | cat > piped.exr"));
+        expect_done(shell("\"$0\" \"$1\" -o file.exr" + settings));
+        EXPECT_EQ(test::read_bytes(folder_ / "piped.exr"), test::read_bytes(folder_ / "file.exr")) << name;
+        EXPECT_FALSE(fs::exists(folder_ / "-"));
+    }
+    expect_done(shell("\"$0\" \"$1\" -o a.exr --stats -" + settings + " > s.json"));
+    EXPECT_TRUE(Json::parse(test::read_bytes(folder_ / "s.json")).contains("totals"));
+    const auto closed = shell("(\"$0\" \"$1\" -o -" + settings + "; echo $? > code) | true; exit $(cat code)");
+    EXPECT_TRUE(closed.exit_code == 73 || closed.exit_code == 0) << closed.err;  // 0: the pipe took all before its end
+    // A file of that name is still one that can be named.
+    expect_done(shell("\"$0\" \"$1\" -o ./-" + settings));
+    EXPECT_TRUE(fs::exists(folder_ / "-"));
+}
+
+TEST_F(Cli, WarningsEndAStrictRunAndStandInTheStatistics) {
+    test::GltfBuilder builder = test::one_triangle();
+    test::write_bytes(folder_ / "s.gltf", builder.gltf());
+    const Words words{"s.gltf", "--size", "4x4", "--iterations", "1", "--photons", "16", "-o", "a.exr"};
+    Words strict = words;
+    strict.push_back("--strict");
+    expect_failure(run(strict), 65, {"s.gltf", "warnings", "--strict"}, "a warning");
+    EXPECT_FALSE(fs::exists(folder_ / "a.exr"));
+    expect_failure(run({"info", "s.gltf", "--strict"}), 65, {"--strict"}, "info");
+    Words plain = words;
+    plain.insert(plain.end(), {"--stats", "s.json"});
+    const auto result = run(plain);
+    expect_done(result);
+    const Json warnings = Json::parse(test::read_bytes(folder_ / "s.json")).at("warnings");
+    std::vector<std::string> told;
+    for (const std::string& line : lines_of(result.err)) {
+        if (line.starts_with("warning: ")) told.push_back(line.substr(9));
+    }
+    EXPECT_EQ(warnings.get<std::vector<std::string>>(), told);
+    EXPECT_FALSE(told.empty());
+}
+
+TEST_F(Cli, AWhitePngNamesTheExposureThatItNeeds) {
+    const auto white = render({"-o", "a.exr", "--png", "a.png", "--exposure", "12"});
+    expect_done(white);
+    EXPECT_TRUE(contains(white.err, "warning: a.png: ")) << white.err;
+    EXPECT_TRUE(contains(white.err, "--exposure ")) << white.err;
+    EXPECT_FALSE(contains(render({"-o", "a.exr", "--png", "a.png"}).err, "warning: a.png")) << "it is well exposed";
 }
 
 TEST_F(Cli, ASceneIsNeeded) {
@@ -791,8 +900,9 @@ TEST_P(CliSignal, KeepsWhatThereIs) {
     EXPECT_EQ(test::names_in(folder_.path()), (std::set<std::string>{"a.exr", "a.json"}));
 }
 
-INSTANTIATE_TEST_SUITE_P(, CliSignal, testing::Values(SIGINT, SIGTERM),
-                         [](const auto& info) { return info.param == SIGINT ? "SIGINT" : "SIGTERM"; });
+INSTANTIATE_TEST_SUITE_P(, CliSignal, testing::Values(SIGINT, SIGTERM, SIGHUP), [](const auto& info) {
+    return info.param == SIGINT ? "SIGINT" : info.param == SIGTERM ? "SIGTERM" : "SIGHUP";
+});
 
 TEST_F(Cli, AnInterruptedPictureIsThatOfAsManyIterations) {
     const Words words{scene("caustic"), "--size", "16x12", "--photons", "500", "-o"};

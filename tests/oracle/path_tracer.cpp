@@ -154,6 +154,7 @@ struct Tracer {
             distance = glm::length(to_light);
             direction = to_light / distance;
             irradiance /= distance * distance;
+            if (light.range > 0.0) irradiance *= std::max(0.0, 1.0 - std::pow(distance / light.range, 4.0));
         }
         if (light.kind == PunctualLight::Kind::spot) {
             // KHR_lights_punctual's recommended falloff.
@@ -271,11 +272,13 @@ Ray camera_ray(const Camera& camera, const Extent& size, double x, double y) {
 
 Ray lens_ray(const Camera& camera, const Extent& size, double x, double y, const glm::dvec2& lens,
              double focus_distance) {
-    const double half = std::tan(camera.yfov / 2.0);
+    const double half = camera.ymag.value_or(std::tan(camera.yfov / 2.0));
     const double aspect = static_cast<double>(size.width) / size.height;
-    const glm::dvec3 sharp = focus_distance * glm::dvec3((2.0 * x / size.width - 1.0) * half * aspect,
-                                                         (1.0 - 2.0 * y / size.height) * half, -1.0);
-    const glm::dvec3 start(lens, 0.0);
+    const glm::dvec3 film((2.0 * x / size.width - 1.0) * half * aspect, (1.0 - 2.0 * y / size.height) * half, 0.0);
+    const glm::dvec3 eye = camera.ymag ? film : glm::dvec3(0.0);
+    const glm::dvec3 ahead = camera.ymag ? glm::dvec3(0.0, 0.0, -1.0) : film - glm::dvec3(0.0, 0.0, 1.0);
+    const glm::dvec3 sharp = eye + focus_distance * ahead;
+    const glm::dvec3 start = eye + glm::dvec3(lens, 0.0);
     const glm::dmat3 rotation(camera.to_world);
     return {glm::dvec3(camera.to_world[3]) + rotation * start, glm::normalize(rotation * (sharp - start))};
 }

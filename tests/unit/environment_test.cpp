@@ -26,16 +26,19 @@ TEST(Environment, ReadsExrAndRadianceByTheirFirstBytes) {
     write_exr(folder / "sky.picture", sky);
     test::write_bytes(folder / "field.picture", hdr);
     std::uint64_t hash = 17;
-    EXPECT_EQ(read_environment(folder / "sky.picture", hash), sky);
+    std::vector<std::string> warnings;
+    EXPECT_EQ(read_environment(folder / "sky.picture", hash, warnings), sky);
     EXPECT_EQ(hash, hash_of(test::read_bytes(folder / "sky.picture"), 17));
     hash = 18;
-    EXPECT_EQ(read_environment(folder / "field.picture", hash), (Image{{2, 1}, {{1, 0.5, 0.25}, {2, 2, 2}}}));
+    EXPECT_EQ(read_environment(folder / "field.picture", hash, warnings), (Image{{2, 1}, {{1, 0.5, 0.25}, {2, 2, 2}}}));
     EXPECT_EQ(hash, hash_of(hdr, 18));
+    EXPECT_EQ(warnings, std::vector<std::string>());
 }
 
 void expect_refused(const std::filesystem::path& file, ExitCode code, const std::vector<std::string>& told) {
     std::uint64_t hash = 17;
-    const auto error = test::thrown_by([&] { read_environment(file, hash); });
+    std::vector<std::string> warnings;
+    const auto error = test::thrown_by([&] { read_environment(file, hash, warnings); });
     ASSERT_TRUE(error) << file;
     const std::string message = error->what();
     EXPECT_EQ(error->code(), code) << message;
@@ -49,18 +52,41 @@ void expect_refused(const std::filesystem::path& file, ExitCode code, const std:
 TEST(Environment, RefusesPixelsThatAreNoRadiance) {
     using Limits = std::numeric_limits<float>;
     const test::TemporaryFolder folder;
-    for (const float bad : {-1e-6f, Limits::infinity(), -Limits::infinity(), Limits::quiet_NaN()}) {
+    for (const float bad : {Limits::infinity(), -Limits::infinity(), Limits::quiet_NaN()}) {
         for (int channel = 0; channel < 3; ++channel) {
             Image sky{{3, 2}, std::vector<glm::vec3>(6, glm::vec3(Limits::max()))};
             sky.rgb[5][channel] = bad;
             write_exr(folder / "sky.exr", sky);
-            expect_refused(folder / "sky.exr", ExitCode::bad_scene, {"pixel (2, 1)", "finite and not negative"});
+            expect_refused(folder / "sky.exr", ExitCode::bad_scene, {"pixel (2, 1)", "must be finite"});
         }
     }
-    Image sky{{1, 1}, {glm::vec3(-0.0f)}};
-    write_exr(folder / "black.exr", sky);
+}
+
+TEST(Environment, TakesWhatIsNegativeForBlack) {
+    const test::TemporaryFolder folder;
+    Image sky{{3, 2}, std::vector<glm::vec3>(6, glm::vec3(2.0f))};
+    sky.rgb[1] = {1, -1e-6f, 3};
+    sky.rgb[5] = {-4, -0.0f, -1e-30f};
+    write_exr(folder / "sky.exr", sky);
     std::uint64_t hash = 0;
-    EXPECT_EQ(read_environment(folder / "black.exr", hash), sky);
+    std::vector<std::string> warnings;
+    const Image read = read_environment(folder / "sky.exr", hash, warnings);
+    sky.rgb[1].g = 0;
+    sky.rgb[5] = {0, 0, 0};
+    EXPECT_EQ(read, sky);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(warnings[0], (folder / "sky.exr").string() +
+                               ": pixel (1, 0) is (1, -1e-06, 3) (and 1 more): negative radiance is taken as 0");
+}
+
+TEST(Environment, TurnsAboutTheVerticalWithoutLosingLight) {
+    // The middle of four columns is +x, the next +z, then -x: seen from above +x goes to -z, one column back.
+    const Image sky{{4, 1}, {{1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}}};
+    EXPECT_EQ(turned(sky, 0.0), sky);
+    EXPECT_EQ(turned(sky, 90.0), (Image{{4, 1}, {{2, 0, 0}, {3, 0, 0}, {4, 0, 0}, {1, 0, 0}}}));
+    EXPECT_EQ(turned(sky, -270.0), turned(sky, 90.0));
+    EXPECT_EQ(turned(sky, 720.0), sky);
+    EXPECT_EQ(turned(sky, 45.0), (Image{{4, 1}, {{1.5, 0, 0}, {2.5, 0, 0}, {3.5, 0, 0}, {2.5, 0, 0}}}));
 }
 
 TEST(Environment, RefusesWhatItCannotTake) {

@@ -275,6 +275,29 @@ TEST(Exr, NamesAMissingChannel) {
     expect_refusal(folder / "a.exr", ExitCode::bad_scene, "no channel G");
 }
 
+TEST(Exr, ReadsGreyAndTheOneLayerThatThereIs) {
+    const test::TemporaryFolder folder;
+    write_planes(folder / "grey.exr", box(0, 0, 3, 3), box(0, 0, 3, 3), {{"Y", Imf::HALF, 2.0f}});
+    EXPECT_EQ(read_exr(folder / "grey.exr").at(1, 1), glm::vec3(2.0f));
+    write_planes(folder / "layer.exr", box(0, 0, 3, 3), box(0, 0, 3, 3),
+                 {{"View.Combined.R", Imf::FLOAT, 1.0f},
+                  {"View.Combined.G", Imf::FLOAT, 2.0f},
+                  {"View.Combined.B", Imf::HALF, 3.0f},
+                  {"View.Depth.Z", Imf::FLOAT, 9.0f}});
+    EXPECT_EQ(read_exr(folder / "layer.exr").at(2, 3), glm::vec3(1.0f, 2.0f, 3.0f));
+    write_planes(folder / "two.exr", box(0, 0, 3, 3), box(0, 0, 3, 3),
+                 {{"a.R", Imf::HALF, 1.0f},
+                  {"a.G", Imf::HALF, 1.0f},
+                  {"a.B", Imf::HALF, 1.0f},
+                  {"b.R", Imf::HALF, 1.0f},
+                  {"b.G", Imf::HALF, 1.0f},
+                  {"b.B", Imf::HALF, 1.0f}});
+    expect_refusal(folder / "two.exr", ExitCode::bad_scene, "2 layers of R, G and B ('a.', 'b.', ...)");
+    write_planes(folder / "chroma.exr", box(0, 0, 3, 3), box(0, 0, 3, 3),
+                 {{"Y", Imf::HALF, 1.0f}, {"RY", Imf::HALF, 1.0f}, {"BY", Imf::HALF, 1.0f}});
+    expect_refusal(folder / "chroma.exr", ExitCode::bad_scene, "no channel R");
+}
+
 TEST(Exr, RefusesAHugeWindowBeforeAllocatingIt) {
     const test::TemporaryFolder folder;
     write_planes(folder / "a.exr", box(0, 0, 999'999'999, 999'999'999), box(0, 0, 1, 1), half_rgb);

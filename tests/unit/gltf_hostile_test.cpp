@@ -1,5 +1,6 @@
 // Malformed files: each gives an Error whose one line names the file, the object, the value and the limit.
 
+#include <array>
 #include <cstring>
 #include <functional>
 #include <limits>
@@ -99,12 +100,41 @@ TEST(HostileFile, GlbHeaders) {
     expect_bad_scene(glb_with_word(binary_header + 4, 0x12345678), {"buffers[0] is absent", "no binary chunk"});
 }
 
+TEST(HostileFile, ScenesOfOtherProgramsAreToldWhatToExport) {
+    const test::TemporaryFolder folder;
+    const auto refusal = [&](const char* name, const std::string& bytes) {
+        test::write_bytes(folder / name, bytes);
+        const auto error = test::thrown_by([&] { load_gltf(folder / name); });
+        if (!error || error->code() != ExitCode::bad_scene) return std::string("no refusal");
+        return std::string(error->what());
+    };
+    for (const auto& [name, bytes, told] :
+         std::vector<std::array<const char*, 3>>{{"a.blend", "BLENDER-v400", "Blender"},
+                                                 {"a", "BLENDER-v400", "Blender"},
+                                                 {"a.OBJ", "v 0 0 0\n", "OBJ"},
+                                                 {"a.usd", "#usda 1.0", "USD"},
+                                                 {"a.fbx", "; FBX 7.7.0", "FBX"},
+                                                 {"a.ply", "ply\nformat", "PLY"},
+                                                 {"a.usdz", "PK\3\4", "USD"},
+                                                 {"a.stl", "solid cube", "STL"}}) {
+        const std::string line = refusal(name, bytes);
+        EXPECT_NE(line.find(told), line.npos) << line;
+        EXPECT_NE(line.find("export it as .glb"), line.npos) << line;
+    }
+    EXPECT_NE(refusal("a.gltf", "solid cube").find("not glTF"), std::string::npos);
+    test::write_bytes(folder / "b.obj", test::one_triangle().gltf());
+    EXPECT_EQ(load_gltf(folder / "b.obj").triangles.size(), 1u) << "what it is counts, not what it is called";
+}
+
 TEST(HostileFile, Buffers) {
     GltfBuilder builder = test::one_triangle();
     expect_bad_scene(builder.gltf_with_uri("gone.bin"), {"buffers[0] is absent", "\"gone.bin\": no such file"});
     expect_bad_scene(builder.gltf_with_uri("hostile.gltf/"), {"buffers[0] is absent"});
-    for (const char* uri : {"../secret.bin", "/etc/passwd", "%2e%2e/secret.bin", "http://example.com/x.bin"}) {
-        expect_bad_scene(builder.gltf_with_uri(uri), {"buffers[0].uri is", uri, "inside the scene's folder"});
+    for (const char* uri : {"/etc/passwd", "file:///etc/passwd", "http://example.com/x.bin", "C:\\x.bin"}) {
+        expect_bad_scene(builder.gltf_with_uri(uri), {"buffers[0] is absent", "not a relative path"});
+    }
+    for (const char* uri : {"../../../../../../etc/passwd", "%2e%2e/%2e%2e/%2e%2e/%2e%2e/etc/passwd"}) {
+        expect_bad_scene(builder.gltf_with_uri(uri), {"buffers[0] is absent", "outside of", "--root"});
     }
     expect_bad_scene(builder.gltf_with_uri("data:;base64,****"), {"buffers[0].uri is", "base64"});
     expect_bad_scene(builder.gltf_with_uri("data:;base64,AAAA"),
@@ -121,7 +151,7 @@ TEST(HostileFile, WhatItStandsForIsInProportionToItsBytes) {
     EXPECT_EQ(max_triangles.of(std::size_t(1) << 32), 134217728u);
 }
 
-TEST(HostileFile, LinksOutOfItsFolder) {
+TEST(HostileFile, LinksOutOfItsRoot) {
     const test::TemporaryFolder outside, folder;
     GltfBuilder builder = test::one_triangle();
     test::write_bytes(outside / "secret.bin", builder.bytes());
@@ -132,14 +162,14 @@ TEST(HostileFile, LinksOutOfItsFolder) {
     std::filesystem::create_symlink("inside/real.bin", folder / "near.bin");
     const auto load = [&](const char* uri) {
         test::write_bytes(folder / "scene.gltf", builder.gltf_with_uri(uri));
-        return test::thrown_by([&] { load_gltf(folder / "scene.gltf"); });
+        return test::thrown_by([&] { load_gltf(folder / "scene.gltf", {.root = folder.path()}); });
     };
     for (const char* uri : {"link.bin", "textures/secret.bin", "%74extures/secret.bin"}) {
         const auto error = load(uri);
         ASSERT_TRUE(error) << uri << " was read";
         const std::string message = error->what();
         EXPECT_EQ(error->code(), ExitCode::bad_scene) << message;
-        for (const std::string& part : {std::string("buffers[0].uri is \"") + uri, (outside / "secret.bin").string()}) {
+        for (const std::string& part : {std::string("buffers[0] is absent"), uri + std::string("\": outside of")}) {
             EXPECT_NE(message.find(part), std::string::npos) << part << " not in: " << message;
         }
     }

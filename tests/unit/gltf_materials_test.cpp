@@ -385,15 +385,18 @@ TEST(GltfImage, AnAbsentOneOrOneOfAnotherFormatIsAWarning) {
     EXPECT_FALSE(absent.materials.at(0).base_color_texture);
     EXPECT_TRUE(absent.uv[0].empty());
     EXPECT_ONE_WARNING(absent, "images[0] (\"gone.png\": no such file)", "absent");
+    // What is refused for safety costs the texture, not the picture.
+    for (const char* uri : {"../../../../../etc/x.png", "/etc/x.png", "file:///x.png", "https://example.com/x.png"}) {
+        const Scene refused = load(with_image({{"uri", uri}}));
+        EXPECT_FALSE(refused.materials.at(0).base_color_texture);
+        EXPECT_ONE_WARNING(refused, std::string("images[0] (\"") + uri, "absent");
+    }
     const Scene ktx = load(with_image({{"uri", test::data_uri("\xabKTX 20\xbb\r\n\x1a\n", "image/ktx2")}}));
     EXPECT_FALSE(ktx.materials.at(0).base_color_texture);
     EXPECT_ONE_WARNING(ktx, "images[0]", "lacks KTX2");
 }
 
 TEST(HostileImage, IsRefusedByALineThatNamesIt) {
-    for (const char* uri : {"../secret.png", "/etc/passwd", "%2e%2e/secret.png", "https://example.com/x.png"}) {
-        expect_bad_scene(with_image({{"uri", uri}}).gltf(), {"images[0].uri is", uri, "inside the scene's folder"});
-    }
     expect_bad_scene(with_image({{"uri", "data:;base64,****"}}).gltf(), {"images[0].uri is", "base64"});
     expect_bad_scene(with_image({{"name", "nothing"}}).gltf(), {"images[0] is", "nothing", "either a uri or"});
     expect_bad_scene(with_image({{"uri", "a.png"}, {"bufferView", 0}}).gltf(), {"images[0] is", "either a uri or"});

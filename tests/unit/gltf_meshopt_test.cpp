@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 #include <meshoptimizer.h>
 
+#include "scene/gltf/meshopt_v1.h"
 #include "support/files/pictures.h"
 #include "support/scenes/loading.h"
 
@@ -214,6 +215,173 @@ TEST(GltfMeshopt, DecompressesAnImage) {
     builder.document["meshes"][0]["primitives"][0]["material"] =
         builder.add("materials", {{"normalTexture", {{"index", 0}}}});
     EXPECT_EQ(test::load_text(with_fallback(builder)).images.at(0).rgba, (Bytes{1, 2, 3, 4}));
+}
+
+// ---- KHR_meshopt_compression ----
+
+/// Version 1 of the codec of attributes by its specification (appendix A), of one block: byte b of the elements is
+/// stored with control mode control[b], and where that is 0 or 1 with the most bits that it has.
+Bytes encode_v1(const Bytes& elements, std::size_t stride, const Bytes& channels, const std::vector<int>& control) {
+    const std::size_t count = elements.size() / stride;
+    std::vector<Bytes> deltas(stride, Bytes(count));
+    Bytes before(elements.begin(), elements.begin() + std::ptrdiff_t(stride));
+    for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t channel = 0; channel < stride / 4; ++channel) {
+            std::uint32_t was = 0, is = 0, delta = 0;
+            std::memcpy(&was, &before[4 * channel], 4);
+            std::memcpy(&is, &elements[i * stride + 4 * channel], 4);
+            const int mode = channels[channel] & 15, rotation = channels[channel] >> 4;
+            if (mode == 2) delta = rotation == 0 ? was ^ is : (was ^ is) >> rotation | (was ^ is) << (32 - rotation);
+            for (int b = 0; mode == 0 && b < 4; ++b) {
+                const auto step = std::uint8_t((is >> 8 * b) - (was >> 8 * b));
+                delta |= std::uint32_t(std::uint8_t(step & 0x80 ? ~(step << 1) : step << 1)) << 8 * b;
+            }
+            for (int w = 0; mode == 1 && w < 2; ++w) {
+                const auto step = std::uint16_t((is >> 16 * w) - (was >> 16 * w));
+                delta |= std::uint32_t(std::uint16_t(step & 0x8000 ? ~(step << 1) : step << 1)) << 16 * w;
+            }
+            for (int b = 0; b < 4; ++b) deltas[4 * channel + b][i] = std::uint8_t(delta >> 8 * b);
+        }
+        before.assign(elements.begin() + std::ptrdiff_t(i * stride),
+                      elements.begin() + std::ptrdiff_t((i + 1) * stride));
+    }
+    Bytes stream{0xa1};
+    for (std::size_t c = 0; c < stride / 4; ++c) {
+        stream.push_back(
+            std::uint8_t(control[4 * c] | control[4 * c + 1] << 2 | control[4 * c + 2] << 4 | control[4 * c + 3] << 6));
+    }
+    for (std::size_t b = 0; b < stride; ++b) {
+        if (control[b] == 3) stream.insert(stream.end(), deltas[b].begin(), deltas[b].end());
+        if (control[b] >= 2) continue;
+        const std::size_t groups = (count + 15) / 16;
+        deltas[b].resize(16 * groups);
+        // Groups in turn: by four or eight bits, the last width of the mode; by the one before it; by the first.
+        static constexpr unsigned widths[2][4] = {{0, 1, 2, 4}, {1, 2, 4, 8}};
+        Bytes header((groups + 3) / 4), data;
+        for (std::size_t g = 0; g < groups; ++g) {
+            const Bytes group(deltas[b].begin() + std::ptrdiff_t(16 * g),
+                              deltas[b].begin() + std::ptrdiff_t(16 * g + 16));
+            const bool is_zero = std::ranges::all_of(group, [](std::uint8_t d) { return d == 0; });
+            const std::size_t choice = is_zero && control[b] == 0 ? 0 : 3 - g % 3;
+            const unsigned bits = widths[control[b]][choice];
+            header[g / 4] |= std::uint8_t(choice << g % 4 * 2);
+            if (bits == 0) continue;
+            Bytes packed(2 * bits), escaped;
+            const unsigned most = (1u << bits) - 1;
+            for (unsigned i = 0; i < 16; ++i) {
+                const unsigned value = bits == 8 ? group[i] : std::min<unsigned>(group[i], most);
+                if (bits < 8 && value == most) escaped.push_back(group[i]);
+                const unsigned at = i * bits % 8;
+                packed[i * bits / 8] |= std::uint8_t(value << (bits == 1 ? at : 8 - bits - at));
+            }
+            data.insert(data.end(), packed.begin(), packed.end());
+            data.insert(data.end(), escaped.begin(), escaped.end());
+        }
+        stream.insert(stream.end(), header.begin(), header.end());
+        stream.insert(stream.end(), data.begin(), data.end());
+    }
+    const std::size_t tail = stride + channels.size();
+    stream.resize(stream.size() + (tail < 24 ? 24 - tail : 0));
+    stream.insert(stream.end(), elements.begin(), elements.begin() + std::ptrdiff_t(stride));
+    stream.insert(stream.end(), channels.begin(), channels.end());
+    return stream;
+}
+
+TEST(KhrMeshopt, DecodesTheGroupOfTheSpecification) {
+    // Its example of four bits: 16 deltas, then two that did not fit; here as byte 0 of elements of four bytes.
+    const Bytes group = {0x17, 0x5f, 0xf0, 0xbc, 0x77, 0xa9, 0x21, 0x00, 0x34, 0xb5};
+    const std::vector<int> steps = {-1, -4, -3, 26, -91, 0, -6, 6, -4, -4, 5, -5, 1, -1, 0, 0};
+    Bytes stream = {0xa1, 0b10101000, 0x03};
+    stream.insert(stream.end(), group.begin(), group.end());
+    stream.resize(stream.size() + 24 - 5);
+    stream.insert(stream.end(), {100, 7, 8, 9, 0});
+    Bytes elements(64);
+    ASSERT_TRUE(decode_meshopt_v1(stream, 4, elements));
+    int value = 100;
+    for (std::size_t i = 0; i < 16; ++i) {
+        value += steps[i];
+        EXPECT_EQ(elements[4 * i], std::uint8_t(value)) << i;
+        EXPECT_EQ(elements[4 * i + 2], 8) << i;
+    }
+    for (std::size_t length = 0; length < stream.size(); ++length) {
+        const Bytes cut(stream.begin(), stream.begin() + std::ptrdiff_t(length));
+        EXPECT_FALSE(decode_meshopt_v1(cut, 4, elements)) << length;
+    }
+}
+
+TEST(KhrMeshopt, DecodesEveryModeOfChannelsAndControl) {
+    Bytes elements;
+    for (std::uint32_t i = 0; i < 100; ++i) {
+        for (const std::uint32_t word : {i * 3u, i * i * 40503u, 0x3f800000u + i * 12345u}) {
+            for (int b = 0; b < 4; ++b) elements.push_back(std::uint8_t(word >> 8 * b));
+        }
+    }
+    for (const Bytes& channels : {Bytes{0, 1, 2}, Bytes{1, 2 | 5 << 4, 2 | 15 << 4}, Bytes{2 | 8 << 4, 0, 1}}) {
+        for (int first = 0; first < 4; ++first) {
+            std::vector<int> control(12);
+            // Mode 2 holds where nothing changes alone: byte 3 of the first word.
+            for (int b = 0; b < 12; ++b) control[b] = (b + first) % 3 == 2 ? 3 : (b + first) % 2;
+            if ((channels[0] & 15) < 2) control[3] = 2;
+            const Bytes stream = encode_v1(elements, 12, channels, control);
+            Bytes decoded(elements.size());
+            ASSERT_TRUE(decode_meshopt_v1(stream, 12, decoded)) << first;
+            EXPECT_EQ(decoded, elements) << first;
+            Bytes longer = stream;
+            longer.insert(longer.begin() + 1, 0);
+            EXPECT_FALSE(decode_meshopt_v1(longer, 12, decoded) && decoded == elements);
+        }
+    }
+    for (const std::uint8_t bad : {0x03, 0x10, 0x21, 0x0f}) {
+        Bytes decoded(elements.size());
+        EXPECT_FALSE(decode_meshopt_v1(encode_v1(elements, 12, {0, bad, 0}, std::vector<int>(12, 3)), 12, decoded));
+    }
+}
+
+TEST(KhrMeshopt, LoadsAMeshOfIt) {
+    GltfBuilder builder = test::one_triangle();
+    const std::vector<Float3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    Bytes elements(36);
+    std::memcpy(elements.data(), positions.data(), 36);
+    const int view =
+        add_compressed_view(builder, encode_v1(elements, 12, {2, 2, 2}, std::vector<int>(12, 3)), 3, 12, "ATTRIBUTES");
+    builder.document["accessors"][0]["bufferView"] = view;
+    json document = json::parse(with_fallback(builder));
+    json& extensions = document["bufferViews"][view]["extensions"];
+    extensions["KHR_meshopt_compression"] = extensions[name];
+    extensions.erase(name);
+    document["extensionsRequired"] = document["extensionsUsed"] = {"KHR_meshopt_compression"};
+    document["buffers"][1] = {{"byteLength", 1000000},
+                              {"extensions", {{"KHR_meshopt_compression", {{"fallback", true}}}}}};
+    const Scene scene = test::load_text(document.dump());
+    ASSERT_EQ(scene.positions.size(), 3u);
+    EXPECT_EQ(scene.positions[1], glm::dvec3(1, 0, 0));
+    EXPECT_EQ(test::warnings_with(scene, {"extensions"}), 0);
+    // What EXT_meshopt_compression has, it has as well.
+    document["bufferViews"][view]["extensions"]["KHR_meshopt_compression"]["filter"] = "OCTAHEDRAL";
+    expect_bad_scene(document.dump(), {"KHR_meshopt_compression.byteStride is 12", "OCTAHEDRAL needs 4 or 8"});
+    document["bufferViews"][view]["extensions"]["KHR_meshopt_compression"]["filter"] = "COLOR";
+    expect_bad_scene(document.dump(), {"KHR_meshopt_compression.byteStride is 12", "COLOR needs 4 or 8"});
+}
+
+TEST(KhrMeshopt, TurnsLumaAndChromaIntoColours) {
+    // All eight bits: y, co, cg and an alpha of seven bits below the mark;
+    // r = y + co - cg, g = y + cg, b = y - co - cg.
+    Bytes bytes = {100, 20, 10, 0x80 | 0x7f, 10, std::uint8_t(-4), std::uint8_t(-6), 0x80 | 0x20};
+    decode_meshopt_colors(bytes, 4);
+    EXPECT_EQ(bytes, (Bytes{110, 110, 70, 255, 12, 4, 20, 64}));
+    // Five bits in eight: 31 is white.
+    Bytes few = {31, 0, 0, 0x10 | 0x0f};
+    decode_meshopt_colors(few, 4);
+    EXPECT_EQ(few, (Bytes{255, 255, 255, 255}));
+    std::vector<std::uint16_t> shorts = {1000, 200, std::uint16_t(-100), 0x8000 | 0x7fff};
+    Bytes wide(8);
+    std::memcpy(wide.data(), shorts.data(), 8);
+    decode_meshopt_colors(wide, 8);
+    std::memcpy(shorts.data(), wide.data(), 8);
+    EXPECT_EQ(shorts, (std::vector<std::uint16_t>{1300, 900, 900, 65535}));
+    // What is nothing stays within its bytes.
+    Bytes nothing = {255, 127, 128, 0};
+    decode_meshopt_colors(nothing, 4);
 }
 
 // ---- hostile files ----

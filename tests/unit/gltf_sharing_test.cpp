@@ -28,7 +28,7 @@ using test::GltfBuilder;
 Scene load(const GltfBuilder& builder, Sharing sharing) {
     const test::TemporaryFolder folder;
     test::write_bytes(folder / "scene.gltf", builder.gltf());
-    return load_gltf(folder / "scene.gltf", sharing);
+    return load_gltf(folder / "scene.gltf", {.sharing = sharing});
 }
 
 /// Corners and normals of triangles, in an order that does not hang on that of nodes.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -13,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "support/scenes/loading.h"
+#include "support/thrown.h"
 
 namespace vkcppm {
 namespace {
@@ -367,14 +369,112 @@ TEST(Gltf, SharesTheVerticesOfPrimitivesWithTheSameAttributes) {
                            {1, 1, 5}});
 }
 
-TEST(Gltf, IgnoresSkinsAndAnimationsWithOneWarningEach) {
+TEST(Gltf, HiddenNodesShowNothingAndShedNoLight) {
     GltfBuilder builder = test::one_triangle();
-    builder.document["nodes"][0]["skin"] = builder.add("skins", {{"joints", {0}}});
-    builder.add("animations", json::object());
+    const auto visible = [](bool value) { return json{{"KHR_node_visibility", {{"visible", value}}}}; };
+    builder.document["extensionsUsed"] = builder.document["extensionsRequired"] = {"KHR_node_visibility"};
+    builder.document["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+    builder.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}});
+    json lamp = {{"camera", 0}, {"extensions", visible(true)}};
+    lamp["extensions"]["KHR_lights_punctual"]["light"] = 0;
+    builder.document["nodes"] = {{{"extensions", visible(false)}, {"children", {1, 2}}},
+                                 {{"mesh", 0}},
+                                 lamp,
+                                 {{"mesh", 0}, {"translation", {0, 0, 5}}, {"extensions", visible(true)}}};
     const Scene scene = load(builder);
-    expect_corners(scene, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
-    EXPECT_ONE_WARNING(scene, "nodes[0]", "skin");
-    EXPECT_ONE_WARNING(scene, "animations");
+    expect_corners(scene, {{0, 0, 5}, {1, 0, 5}, {0, 1, 5}});
+    EXPECT_TRUE(scene.lights.empty());
+    EXPECT_EQ(scene.cameras.size(), 1u) << "one may look from where nothing is shown";
+    EXPECT_TRUE(scene.warnings.empty()) << all_warnings(scene);
+}
+
+TEST(Gltf, WholeNumbersMayBeWrittenWithAPointOrAnExponent) {
+    const std::string text = test::one_triangle().gltf();
+    const auto with = [&](const std::string& from, const std::string& to) {
+        std::string changed = text;
+        const std::size_t at = changed.find(from);
+        EXPECT_NE(at, changed.npos) << from;
+        return changed.replace(at, from.size(), to);
+    };
+    for (const char* count : {"3.0", "3e0", "30e-1", "0.3E+1"}) {
+        EXPECT_EQ(load_text(with("\"count\":3", std::string("\"count\":") + count)).triangles.size(), 1u) << count;
+    }
+    EXPECT_EQ(load_text(with("\"mesh\":0", "\"mesh\":-0.0")).triangles.size(), 1u);
+    for (const char* count : {"3.5", "-3.0", "1e300", "9007199254740994.0"}) {
+        test::expect_bad_scene(with("\"count\":3", std::string("\"count\":") + count), {"accessors[0].count is"});
+    }
+}
+
+TEST(Gltf, AVariantHasOtherMaterials) {
+    GltfBuilder builder = test::one_triangle();
+    builder.document["extensionsUsed"] = {"KHR_materials_variants"};
+    for (const char* name : {"plain", "red", "blue"}) builder.add("materials", {{"name", name}});
+    builder.document["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "day"}}, {{"name", "night"}}};
+    json& primitive = builder.document["meshes"][0]["primitives"][0];
+    primitive["material"] = 0;
+    primitive["extensions"]["KHR_materials_variants"]["mappings"] = {{{"variants", {1}}, {"material", 2}}};
+    const test::TemporaryFolder folder;
+    test::write_bytes(folder / "scene.gltf", builder.gltf());
+    const auto material = [&](const std::string& variant) {
+        return load_gltf(folder / "scene.gltf", {.variant = variant}).triangles.at(0).material;
+    };
+    EXPECT_EQ(material(""), 0u);
+    EXPECT_EQ(material("day"), 0u);
+    EXPECT_EQ(material("night"), 2u);
+    EXPECT_EQ(material("1"), 2u);
+    EXPECT_EQ(warnings_with(load_gltf(folder / "scene.gltf"), {"extensions"}), 0);
+    const auto error = test::thrown_by([&] { material("dusk"); });
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->code(), ExitCode::usage);
+    EXPECT_NE(std::string(error->what()).find("0 'day', 1 'night'"), std::string::npos) << error->what();
+    primitive["extensions"]["KHR_materials_variants"]["mappings"][0]["variants"] = {7};
+    test::expect_bad_scene(builder.gltf(), {"mappings[0].variants[0] is 7", "variants has 2"});
+}
+
+// ---- files beside the scene ----
+
+TEST(Gltf, ReadsFilesBesideItsFolderAndWithARootElsewhere) {
+    const test::TemporaryFolder folder;
+    const GltfBuilder builder = test::one_triangle();
+    std::filesystem::create_directories(folder / "a/b/models");
+    std::filesystem::create_directories(folder / "a/b/data");
+    const std::filesystem::path scene = folder / "a/b/models/scene.gltf";
+    const auto triangles = [&](const std::string& uri, const GltfOptions& options = {}) {
+        test::write_bytes(scene, builder.gltf_with_uri(uri));
+        return load_gltf(scene, options).triangles.size();
+    };
+    test::write_bytes(folder / "a/b/data/near.bin", builder.bytes());
+    test::write_bytes(folder / "a/far.bin", builder.bytes());
+    std::filesystem::create_symlink(folder / "a/b/data/near.bin", folder / "a/b/models/near.bin");
+    std::filesystem::create_symlink(folder / "a/far.bin", folder / "a/b/models/far.bin");
+    EXPECT_EQ(triangles("../data/near.bin"), 1u);
+    EXPECT_EQ(triangles("near.bin"), 1u);
+    EXPECT_EQ(triangles("x/../../data/./near.bin"), 1u);
+    EXPECT_EQ(triangles("../../far.bin", {.root = folder / "a"}), 1u);
+    EXPECT_EQ(triangles("far.bin", {.root = folder / "a"}), 1u);
+    for (const char* uri : {"../../far.bin", "far.bin", "../data/../../far.bin"}) {
+        const auto error = test::thrown_by([&] { triangles(uri); });
+        ASSERT_TRUE(error) << uri;
+        EXPECT_EQ(error->code(), ExitCode::bad_scene);
+        EXPECT_NE(std::string(error->what()).find("--root"), std::string::npos) << error->what();
+    }
+    EXPECT_TRUE(test::thrown_by([&] { triangles("../data/near.bin", {.root = folder / "a/b/models"}); }));
+    const auto error = test::thrown_by([&] { triangles("near.bin", {.root = folder / "none"}); });
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->code(), ExitCode::no_input);
+}
+
+TEST(Gltf, TellsWhichFilesItNames) {
+    GltfBuilder builder = test::one_triangle();
+    builder.add("images", {{"uri", "unused.png"}});
+    builder.add("images", {{"uri", "https://example.org/t.png"}});
+    builder.add("images", {{"uri", "data:image/png;base64,AAAA"}});
+    const test::TemporaryFolder folder;
+    test::write_bytes(folder / "scene.gltf", builder.gltf_with_uri("my%20data.bin"));
+    test::write_bytes(folder / "my data.bin", builder.bytes());
+    EXPECT_EQ(
+        load_gltf(folder / "scene.gltf").inputs,
+        (std::vector<std::filesystem::path>{folder / "scene.gltf", folder / "my data.bin", folder / "unused.png"}));
 }
 
 TEST(Gltf, SaysWhereThereIsNoTriangle) {
@@ -437,14 +537,33 @@ double widest_angle(const Scene& scene, const Camera& camera) {
     return widest;
 }
 
-TEST(Gltf, FramesASceneWithoutAPerspectiveCamera) {
-    const json camera = {{"type", "orthographic"},
-                         {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0.1}, {"zfar", 10}}}};
-    GltfBuilder builder = with_camera(camera, json::object());
+TEST(Gltf, ReadsAnOrthographicCamera) {
+    const json lens = {{"xmag", 3}, {"ymag", 2}, {"znear", 0.1}, {"zfar", 10}};
+    const Scene scene = load(with_camera({{"type", "orthographic"}, {"name", "plan"}, {"orthographic", lens}},
+                                         {{"name", "tripod"}, {"scale", {2, 3, 4}}, {"translation", {1, 2, 3}}}));
+    ASSERT_EQ(scene.cameras.size(), 1u);
+    EXPECT_EQ(scene.cameras[0].name, "plan");
+    EXPECT_EQ(scene.cameras[0].node, "tripod");
+    EXPECT_EQ(scene.cameras[0].ymag, 2.0);
+    EXPECT_EQ(scene.cameras[0].aspect, 1.5);
+    expect_near(scene.cameras[0].to_world[3], {1, 2, 3}, 1e-12, "position");
+    EXPECT_TRUE(scene.warnings.empty()) << all_warnings(scene);
+    for (const char* side : {"xmag", "ymag"}) {
+        for (const double size : {0.0, -1.0, 1e300}) {
+            json bad = lens;
+            bad[side] = size;
+            test::expect_bad_scene(
+                with_camera({{"type", "orthographic"}, {"orthographic", bad}}, json::object()).gltf(),
+                {fmt::format("cameras[0].orthographic.{} is", side), "positive"});
+        }
+    }
+}
+
+TEST(Gltf, FramesASceneWithoutACamera) {
+    GltfBuilder builder = test::one_triangle();
     builder.document["nodes"][0]["scale"] = {1000, 10, 10};
     const Scene scene = load(builder);
-    EXPECT_ONE_WARNING(scene, "cameras[0]", "orthographic");
-    EXPECT_ONE_WARNING(scene, "no perspective camera");
+    EXPECT_ONE_WARNING(scene, "no camera");
     ASSERT_EQ(scene.cameras.size(), 1u);
     const Camera& frame = scene.cameras[0];
     const double widest = widest_angle(scene, frame);
@@ -501,12 +620,18 @@ TEST(Gltf, ReadsTheDefaultsOfLights) {
     EXPECT_EQ(sun.direction, glm::dvec3(0, 0, -1));
 }
 
-TEST(Gltf, IgnoresARangeWithAWarning) {
-    const json light = {{"type", "point"}, {"range", 5}};
-    const Scene scene = load_light(light, {{"translation", {0, 4, 0}}, {"scale", {0, 0, 0}}});
-    EXPECT_EQ(scene.lights[0].kind, PunctualLight::Kind::point);
-    EXPECT_EQ(scene.lights[0].position, glm::dvec3(0, 4, 0));
-    EXPECT_ONE_WARNING(scene, "lights[0].range");
+TEST(Gltf, ReadsTheRangeOfALight) {
+    const auto range_of = [](const json& light) { return load_light(light, json::object()).lights[0].range; };
+    EXPECT_EQ(range_of({{"type", "point"}, {"range", 5}}), 5.0);
+    EXPECT_EQ(range_of({{"type", "spot"}, {"range", 0.5}, {"spot", json::object()}}), 0.5);
+    EXPECT_EQ(range_of({{"type", "point"}}), 0.0) << "without end";
+    EXPECT_EQ(range_of({{"type", "point"}, {"range", 1e300}}), 0.0);
+    EXPECT_EQ(range_of({{"type", "directional"}, {"range", 5}}), 0.0) << "of a sun it means nothing";
+    for (const double none : {0.0, -2.0}) {
+        const Scene scene = load_light({{"type", "point"}, {"range", none}}, json::object());
+        EXPECT_EQ(scene.lights[0].range, 0.0);
+        EXPECT_ONE_WARNING(scene, "lights[0].range", "greater than 0");
+    }
 }
 
 TEST(Gltf, ClampsConesWithAWarning) {

@@ -39,6 +39,24 @@ TEST(Hdr, ReadsTheWholeRangeOfExponents) {
     EXPECT_EQ(image.at(1, 0), glm::vec3(0x1p-135f, 0x1p-128f, 255.0f * 0x1p-135f));
 }
 
+TEST(Hdr, ReadsAllOrdersOfRowsAndColumns) {
+    // Six pixels in the order of the file, told apart by their exponents: 2^0 to 2^5.
+    std::vector<int> pixels;
+    for (int i = 0; i < 6; ++i) pixels.insert(pixels.end(), {128, 128, 128, 129 + i});
+    // Where they lie, first row on top.
+    const std::vector<std::pair<std::string, std::vector<int>>> orders = {
+        {"-Y 2 +X 3", {0, 1, 2, 3, 4, 5}}, {"+Y 2 +X 3", {3, 4, 5, 0, 1, 2}}, {"-Y 2 -X 3", {2, 1, 0, 5, 4, 3}},
+        {"+Y 2 -X 3", {5, 4, 3, 2, 1, 0}}, {"+X 3 -Y 2", {0, 2, 4, 1, 3, 5}}, {"-X 3 -Y 2", {4, 2, 0, 5, 3, 1}},
+        {"+X 3 +Y 2", {1, 3, 5, 0, 2, 4}}, {"-X 3 +Y 2", {5, 3, 1, 4, 2, 0}}};
+    for (const auto& [order, places] : orders) {
+        const Image image = decode(header(order) + bytes(pixels));
+        ASSERT_EQ(image.extent, (Extent{3, 2})) << order;
+        for (std::size_t i = 0; i < 6; ++i) {
+            EXPECT_EQ(image.rgb[i].r, float(1 << places[i])) << order << ", pixel " << i;
+        }
+    }
+}
+
 /// A row of 8 in the newer encoding: red 10 runs, green and blue as they are, the exponent in two runs.
 const std::vector<int> new_row = {2,       2,   0,       8,                        //
                                   128 + 8, 10,                                     //
@@ -99,8 +117,9 @@ TEST(Hdr, RefusesEveryBadFileAndSaysWhy) {
         {header("-Y 1 +X 1", "EXPOSURE=nan\n") + pixel, "'nan'"},
         {header("-Y 1 +X 1", "EXPOSURE=\n") + pixel, "factor"},
         {header("-Y 1 +X 1", "COLORCORR=1 2\n") + pixel, "factor"},
-        {header("+Y 1 +X 1") + pixel, "'+Y 1 +X 1'"},
-        {header("+X 1 -Y 1") + pixel, "'+X 1 -Y 1'"},
+        {header("-Y 1 +Y 1") + pixel, "'-Y 1 +Y 1'"},
+        {header("Y 1 X 1") + pixel, "'Y 1 X 1'"},
+        {header("-Y 1"), "'-Y 1'"},
         {header("-Y 0 +X 1"), "'-Y 0 +X 1'"},
         {header("-Y -1 +X 1"), "'-Y -1 +X 1'"},
         {header("-Y 1 +X 1 1") + pixel, "'-Y 1 +X 1 1'"},

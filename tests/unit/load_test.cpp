@@ -39,7 +39,7 @@ int lines_with(const Scene& scene, const std::string& part) {
 TEST(Load, EndsTheWarningsWithTheDiagnosis) {
     const test::TemporaryFolder folder;
     test::write_bytes(folder / "gem.gltf", thin_tetrahedron());
-    const Scene scene = load_scene({folder / "gem.gltf", {}, ThinGlass::thin});
+    const Scene scene = load_scene({.file = folder / "gem.gltf"});
     EXPECT_FALSE(scene.environment);
     EXPECT_EQ(scene.hash, load_gltf(folder / "gem.gltf").hash);
     EXPECT_EQ(scene.materials[0].thickness, 0.0f);
@@ -50,7 +50,7 @@ TEST(Load, EndsTheWarningsWithTheDiagnosis) {
 TEST(Load, MakesThinGlassSolidBeforeTheDiagnosis) {
     const test::TemporaryFolder folder;
     test::write_bytes(folder / "gem.gltf", thin_tetrahedron());
-    const Scene scene = load_scene({folder / "gem.gltf", {}, ThinGlass::solid});
+    const Scene scene = load_scene({.file = folder / "gem.gltf", .thin_glass = ThinGlass::solid});
     EXPECT_GT(scene.materials[0].thickness, 0.0f);
     EXPECT_EQ(lines_with(scene, "crystal"), 0);
 }
@@ -60,13 +60,42 @@ TEST(Load, PutsTheEnvironmentRoundTheSceneAndIntoItsHash) {
     test::write_bytes(folder / "gem.gltf", thin_tetrahedron());
     const Image sky{{2, 1}, {{1, 2, 3}, {4, 5, 6}}};
     write_exr(folder / "sky.exr", sky);
-    const Scene scene = load_scene({folder / "gem.gltf", folder / "sky.exr", ThinGlass::thin});
+    const Scene scene = load_scene({.file = folder / "gem.gltf", .environment = folder / "sky.exr"});
     ASSERT_TRUE(scene.environment);
     EXPECT_EQ(scene.environment->size, sky.extent);
     EXPECT_EQ(scene.environment->radiance, sky.rgb);
     EXPECT_EQ(lines_with(scene, "no light"), 0);
     EXPECT_NE(scene.hash, load_gltf(folder / "gem.gltf").hash);
-    EXPECT_TRUE(test::thrown_by([&] { load_scene({folder / "gem.gltf", folder / "no.exr", ThinGlass::thin}); }));
+    EXPECT_TRUE(test::thrown_by([&] { load_scene({.file = folder / "gem.gltf", .environment = folder / "no.exr"}); }));
+}
+
+TEST(Load, TurnsAndScalesTheEnvironment) {
+    const test::TemporaryFolder folder;
+    test::write_bytes(folder / "gem.gltf", thin_tetrahedron());
+    write_exr(folder / "sky.exr", Image{{2, 1}, {{1, 2, 3}, {4, 5, 6}}});
+    SceneOptions options{.file = folder / "gem.gltf", .environment = folder / "sky.exr"};
+    const std::uint64_t plain = load_scene(options).hash;
+    options.environment_rotation = 180.0;
+    options.environment_strength = 0.5;
+    const Scene scene = load_scene(options);
+    EXPECT_EQ(scene.environment->radiance, (std::vector<glm::vec3>{{2, 2.5, 3}, {0.5, 1, 1.5}}));
+    EXPECT_NE(scene.hash, plain);
+    EXPECT_EQ(scene.inputs.back(), folder / "sky.exr");
+    options.environment_strength = 3e38;
+    const auto error = test::thrown_by([&] { load_scene(options); });
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->code(), ExitCode::usage);
+}
+
+TEST(Load, StrictRunsAllowNoWarning) {
+    Scene scene;
+    EXPECT_FALSE(test::thrown_by([&] { tell_warnings(scene, {.file = "a.gltf", .strict = true}); }));
+    scene.warnings = {"a.gltf: odd", "a.gltf: odder"};
+    EXPECT_FALSE(test::thrown_by([&] { tell_warnings(scene, {.file = "a.gltf"}); }));
+    const auto error = test::thrown_by([&] { tell_warnings(scene, {.file = "a.gltf", .strict = true}); });
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->code(), ExitCode::bad_scene);
+    EXPECT_EQ(std::string(error->what()), "a.gltf: 2 warnings; with --strict there must be none");
 }
 
 }  // namespace

@@ -175,6 +175,7 @@ TEST(Options, TheFirstWordChoosesTheCommand) {
     EXPECT_EQ(memory.settings.size->pixels(), 600u);
     EXPECT_TRUE(memory.settings.aovs);
     EXPECT_FALSE(std::get<DevicesOptions>(parse({"devices"})).json);
+    EXPECT_TRUE(std::get<DoctorOptions>(parse({"doctor", "--json"})).json);
     EXPECT_EQ(std::get<RenderOptions>(parse({"./compare"})).scene.file, "./compare");
     EXPECT_EQ(std::get<RenderOptions>(parse({"--quiet", "info"})).scene.file, "info");
 }

@@ -85,5 +85,18 @@ TEST(Png, TellsWhereItCannotWrite) {
     EXPECT_TRUE(test::names_in(folder.path()).empty());
 }
 
+TEST(Png, TellsHowMuchIsClippedAndWhatWouldShowIt) {
+    Image image{{10, 10}, std::vector<glm::vec3>(100, glm::vec3(0.5f))};
+    EXPECT_EQ(clipping_of(image, 0.0).share, 0.0);
+    EXPECT_EQ(clipping_of(image, 0.0).exposure, 1.0);
+    EXPECT_EQ(clipping_of(image, 2.0).share, 1.0);
+    for (std::size_t i = 0; i < 60; ++i) image.rgb[i] = glm::vec3(0.0f, 8.0f, 0.0f);
+    image.rgb[0].r = 1e30f;
+    EXPECT_EQ(clipping_of(image, 0.0).share, 0.6);
+    EXPECT_EQ(clipping_of(image, 0.0).exposure, -3.0) << "all but the brightest twentieth fits";
+    EXPECT_EQ(clipping_of(image, -3.0).share, 0.01);
+    EXPECT_EQ(clipping_of(Image{{1, 1}, {glm::vec3(0.0f)}}, 0.0).exposure, 0.0);
+}
+
 }  // namespace
 }  // namespace vkcppm

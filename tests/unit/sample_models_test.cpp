@@ -22,7 +22,7 @@ TEST_P(SampleModels, LoadWithTheirTrianglesAndWarnings) {
     EXPECT_EQ(scene.triangles.size(), GetParam().triangles);
     for (const std::string& part : GetParam().warnings) EXPECT_ONE_WARNING(scene, part);
     const auto about_the_camera =
-        std::size_t(warnings_with(scene, {"the scene: there is no perspective camera, one that frames it is used"}));
+        std::size_t(warnings_with(scene, {"the scene: there is no camera, one that frames it is used"}));
     EXPECT_EQ(scene.warnings.size(), GetParam().warnings.size() + about_the_camera) << all_warnings(scene);
 }
 

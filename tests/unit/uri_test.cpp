@@ -31,12 +31,13 @@ TEST(DecodeDataUri, RefusesWhatIsMalformed) {
     EXPECT_EQ(decoded("data:text/plain,a%2"), "(malformed)");
 }
 
-TEST(ResolveUri, StaysInTheFolder) {
+TEST(ResolveUri, TakesRelativePathsAlone) {
     EXPECT_EQ(resolve_uri("/scenes", "a.bin"), "/scenes/a.bin");
     EXPECT_EQ(resolve_uri("/scenes", "sub/Box%20With%20Spaces.bin"), "/scenes/sub/Box With Spaces.bin");
     EXPECT_EQ(resolve_uri("/scenes", "sub/../a.bin"), "/scenes/a.bin");
-    for (const char* uri : {"../a.bin", "sub/../../a.bin", "%2e%2e/a.bin", "/etc/passwd", "%2Fetc/passwd", "", "..",
-                            "file:///a.bin", "http://example.com/a.bin", "a%00.bin", "a%zz.bin", "a%2"}) {
+    EXPECT_EQ(resolve_uri("/scenes", "../textures/a.png"), "/scenes/../textures/a.png");
+    for (const char* uri : {"/etc/passwd", "%2Fetc/passwd", "", "file:///a.bin", "http://example.com/a.bin", "a%00.bin",
+                            "a%zz.bin", "a%2"}) {
         EXPECT_EQ(resolve_uri("/scenes", uri), std::nullopt) << uri;
     }
 }

@@ -12,6 +12,7 @@
 #include "app/console.h"
 #include "app/interrupt.h"
 #include "app/load.h"
+#include "app/outputs.h"
 #include "app/pipeline_cache.h"
 #include "app/progress.h"
 #include "app/race/page.h"
@@ -75,6 +76,28 @@ void make_folder(const fs::path& folder) {
                     fmt::format("cannot make the folder {}: {}", folder.string(), error.message()));
     }
     check_writable(folder / "index.html");
+}
+
+/// A race must not write over the scene, its files or the reference.
+void check_race_outputs(const RaceOptions& options, const RaceInput& input, const RaceSettings& race) {
+    std::vector<std::optional<fs::path>> inputs(input.scene.inputs.begin(), input.scene.inputs.end());
+    std::vector<std::string> names = {"index.html",    "race.json",  "curves.csv",
+                                      "reference.png", "winner.png", "winner-around.png"};
+    const fs::path copy = options.folder / "reference.exr";
+    if (options.make_reference || !is_same_file(copy, input.reference)) names.push_back("reference.exr");
+    if (!options.make_reference) inputs.push_back(input.reference);
+    for (const Entrant& entrant : race.entrants) {
+        for (const char* rest : {".exr", ".png", "-difference.png", "-radius.png"}) {
+            names.push_back(file_stem(entrant) + rest);
+        }
+    }
+    std::vector<std::string> endings;
+    for (const std::string& name : names) endings.push_back(fs::path(name).extension().string());
+    std::vector<Output> outputs;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        outputs.push_back({"-o", options.folder / names[i], endings[i].c_str()});
+    }
+    check_outputs(inputs, outputs, false);
 }
 
 /// "37 %, seed 1 of 3, 2 min 5 s left; MSE cppm 0.00123, sppm 0.00234"
@@ -145,7 +168,7 @@ void write_pictures(const RaceOptions& options, const RaceInput& input, const Ra
         write_file(options.folder / (name + ".png"), encode_png(bitmap));
     };
     const fs::path copy = options.folder / "reference.exr";
-    if (fs::weakly_canonical(copy) != fs::weakly_canonical(input.reference)) {
+    if (!is_same_file(copy, input.reference)) {
         write_exr(copy, reference, input.reference_attributes);
     }
     write_bitmap("reference", pictures.reference);
@@ -171,7 +194,7 @@ void write_pictures(const RaceOptions& options, const RaceInput& input, const Ra
 void execute(const RaceOptions& options) {
     catch_interrupts();
     const Scene scene = load_scene(options.scene);
-    print_warnings(scene.warnings);
+    tell_warnings(scene, options.scene);
     RaceInput input{scene, options.make_reference ? options.folder / "reference.exr" : find_reference(options), {}};
     RaceSettings wanted = options.race;
     Image reference;
@@ -190,6 +213,7 @@ void execute(const RaceOptions& options) {
         print_warnings(mismatches(input, exr_attributes(options.scene, scene, sample)));
     }
     make_folder(options.folder);
+    check_race_outputs(options, input, race);
     Device device(options.device);
     const PipelineCache cache(device, options.device.cache);
     if (options.make_reference) reference = make_race_reference(options, input, race, device);

@@ -106,6 +106,22 @@ template std::vector<glm::dvec2> read_vectors<2>(const AccessorView&);
 template std::vector<glm::dvec3> read_vectors<3>(const AccessorView&);
 template std::vector<glm::dvec4> read_vectors<4>(const AccessorView&);
 
+std::vector<double> read_numbers(const AccessorView& accessor, std::size_t components) {
+    const std::size_t size = component_size(accessor.type);
+    std::vector<double> numbers(accessor.count * components);
+    const auto load = [&](const ElementBytes& elements, std::size_t from, std::size_t to) {
+        const std::uint8_t* bytes = elements.bytes.data() + from * elements.stride;
+        for (std::size_t c = 0; c < components; ++c) {
+            numbers[to * components + c] = load_component(bytes + c * size, accessor.type, accessor.normalized);
+        }
+    };
+    for (std::size_t i = 0; accessor.base && i < accessor.count; ++i) load(*accessor.base, i, i);
+    for (std::size_t i = 0; accessor.sparse && i < accessor.sparse->count; ++i) {
+        load(accessor.sparse->values, i, load_index(accessor.sparse->indices, i, accessor.sparse->index_type));
+    }
+    return numbers;
+}
+
 std::vector<std::uint32_t> read_indices(const AccessorView& accessor) {
     return read<std::uint32_t>(
         accessor, [&](const ElementBytes& elements, std::size_t i) { return load_index(elements, i, accessor.type); });

@@ -52,6 +52,9 @@ std::optional<std::size_t> bad_sparse_index(const AccessorView& accessor);
 /// [count] vectors of N components: 2, 3 or 4.
 template <int N> std::vector<glm::vec<N, double>> read_vectors(const AccessorView& accessor);
 
+/// [count x components] the components of all elements, one after the other; of a matrix its columns.
+std::vector<double> read_numbers(const AccessorView& accessor, std::size_t components);
+
 /// [count] unsigned integers; the type is u8, u16 or u32.
 std::vector<std::uint32_t> read_indices(const AccessorView& accessor);
 

@@ -39,8 +39,19 @@ template const SharedVectors<2>& GltfAccessors::vectors<2>(int, std::string_view
 template const SharedVectors<3>& GltfAccessors::vectors<3>(int, std::string_view);
 template const SharedVectors<4>& GltfAccessors::vectors<4>(int, std::string_view);
 
+std::vector<double> GltfAccessors::numbers(int accessor, int components, std::string_view use) {
+    const AccessorView source = view(accessor, components, use);
+    read_vectors_ += source.count * std::size_t((components + 3) / 4);
+    check_total(read_vectors_, max_read_vectors, "vectors that the meshes read", file_);
+    return read_numbers(source, std::size_t(components));
+}
+
 GltfAccessors::Indices GltfAccessors::indices(int accessor) {
     const AccessorView source = view(accessor, 1, "indices");
+    if (!is_unsigned(source.type)) {
+        bad_scene(file_.name, fmt::format("accessors[{}].componentType", accessor), fmt::to_string(int(source.type)),
+                  "not a type of indices");
+    }
     return {read_indices(source), UINT32_MAX >> (32 - 8 * component_size(source.type))};
 }
 
@@ -69,7 +80,7 @@ AccessorView GltfAccessors::view(int accessor, int components, std::string_view 
     view.type = ComponentType(source.componentType);
     view.normalized = source.normalized;
     const std::size_t size = component_size(view.type) * components;
-    if (size == 0 || (components == 1 && !is_unsigned(view.type))) {
+    if (size == 0) {
         bad_scene(file_.name, object + ".componentType", fmt::to_string(source.componentType),
                   fmt::format("not a type of {}", use));
     }

@@ -39,6 +39,9 @@ public:
     /// The vectors of an accessor, read once. `use` says what for, e.g. "POSITION".
     template <int N> const SharedVectors<N>& vectors(int accessor, std::string_view use);
 
+    /// [count x components] the numbers of an accessor, element after element; not kept. `use` as above.
+    std::vector<double> numbers(int accessor, int components, std::string_view use);
+
     /// [count] indices, and the number of its type that is none (primitive restart).
     struct Indices {
         std::vector<std::uint32_t> values;

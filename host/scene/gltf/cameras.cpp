@@ -1,5 +1,6 @@
 #include "scene/gltf/cameras.h"
 
+#include <cfloat>
 #include <cmath>
 #include <numbers>
 
@@ -30,19 +31,16 @@ std::optional<glm::dmat3> orthonormal_frame(const glm::dvec3& z, const glm::dvec
 
 std::optional<Camera> read_camera(const GltfFile& file, const tinygltf::Model& model, const PlacedNode& placed,
                                   Warnings& warnings) {
-    const auto& [index, to_world] = placed;
+    const int index = placed.index;
+    const glm::dmat4& to_world = placed.to_world;
     const tinygltf::Node& node = model.nodes[index];
     if (node.camera < 0) return std::nullopt;
     const tinygltf::Camera& source = model.cameras[node.camera];
-    const std::string object = fmt::format("cameras[{}]", node.camera);
-    if (source.type != "perspective") {
-        warnings.add("orthographic cameras are skipped", object);
-        return std::nullopt;
-    }
-    const double yfov = source.perspective.yfov;
-    if (!(yfov > 0.0 && yfov < std::numbers::pi)) {
-        bad_scene(file.name, object + ".perspective.yfov", fmt::to_string(yfov), "it must lie between 0 and pi");
-    }
+    const bool is_orthographic = source.type == "orthographic";
+    const std::string object = fmt::format("cameras[{}].{}", node.camera, source.type);
+    const auto require = [&](bool holds, const char* member, double value, std::string_view limit) {
+        if (!holds) bad_scene(file.name, fmt::format("{}.{}", object, member), fmt::to_string(value), limit);
+    };
     const std::optional<glm::dmat3> frame = orthonormal_frame(glm::dvec3(to_world[2]), glm::dvec3(to_world[1]));
     if (!frame) {
         warnings.add("its camera is skipped, the transform is singular", fmt::format("nodes[{}]", index));
@@ -50,15 +48,23 @@ std::optional<Camera> read_camera(const GltfFile& file, const tinygltf::Model& m
     }
     Camera camera;
     camera.name = source.name.empty() ? node.name : source.name;
+    camera.node = node.name;
     camera.to_world = glm::dmat4(*frame);
     camera.to_world[3] = to_world[3];
-    camera.yfov = yfov;
+    if (is_orthographic) {
+        const double xmag = source.orthographic.xmag, ymag = source.orthographic.ymag;
+        const auto is_length = [](double mag) { return mag >= FLT_MIN && mag <= FLT_MAX; };
+        require(is_length(xmag), "xmag", xmag, "it must be positive and within floats");
+        require(is_length(ymag), "ymag", ymag, "it must be positive and within floats");
+        camera.ymag = ymag;
+        camera.aspect = xmag / ymag;
+        return camera;
+    }
+    camera.yfov = source.perspective.yfov;
+    require(camera.yfov > 0.0 && camera.yfov < std::numbers::pi, "yfov", camera.yfov, "it must lie between 0 and pi");
     if (file.document["cameras"][node.camera]["perspective"].contains("aspectRatio")) {
         camera.aspect = source.perspective.aspectRatio;
-        if (!(*camera.aspect > 0.0)) {
-            bad_scene(file.name, object + ".perspective.aspectRatio", fmt::to_string(*camera.aspect),
-                      "it must be positive");
-        }
+        require(*camera.aspect > 0.0, "aspectRatio", *camera.aspect, "it must be positive");
     }
     return camera;
 }

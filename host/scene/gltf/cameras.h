@@ -10,8 +10,8 @@
 
 namespace vkcppm {
 
-/// The perspective camera of a node; none where it has none or, with a warning, one that is orthographic or flat.
-/// Throws Error(bad_scene) where its angle or its aspect ratio is out of range.
+/// The camera of a node; none where it has none or, with a warning, one that is flat. zfar and znear cut nothing.
+/// Throws Error(bad_scene) where its angle, its size or its aspect ratio is out of range.
 std::optional<Camera> read_camera(const GltfFile& file, const tinygltf::Model& model, const PlacedNode& placed,
                                   Warnings& warnings);
 

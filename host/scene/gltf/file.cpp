@@ -9,6 +9,7 @@
 
 #include "core/fnv1a.h"
 #include "scene/bad_scene.h"
+#include "scene/gltf/meshopt.h"
 #include "scene/gltf/schema.h"
 #include "scene/gltf/resource.h"
 #include "scene/gltf/uri.h"
@@ -115,6 +116,37 @@ json parse_json(std::span<const std::uint8_t> text, const std::string& file) {
     }
 }
 
+/// Refuses a scene in the format of another program, by its first bytes or its ending, with a word on what to do.
+void check_foreign(std::span<const std::uint8_t> bytes, const std::filesystem::path& path) {
+    struct Format {
+        std::string_view ending, magic, name;
+    };
+    static constexpr Format formats[] = {
+        {".blend", "BLENDER", "a file of Blender"},
+        {".fbx", "Kaydara FBX", "FBX"},
+        {".usdc", "PXR-USDC", "USD"},
+        {".usda", "#usda", "USD"},
+        {".usd", "", "USD"},
+        {".usdz", "", "USD"},
+        {".obj", "", "Wavefront OBJ"},
+        {".dae", "", "COLLADA"},
+        {".ply", "ply\n", "PLY"},
+        {".stl", "", "STL"},
+        {".abc", "Ogawa", "Alembic"},
+        {".3ds", "", "3DS"},
+    };
+    std::string ending = path.extension().string();
+    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const bool begins_like_gltf = text.starts_with("glTF") || text.substr(0, 16).find('{') != text.npos;
+    for (const Format& format : formats) {
+        const bool is_it = !format.magic.empty() && text.starts_with(format.magic);
+        if (!is_it && (ending != format.ending || begins_like_gltf)) continue;
+        bad_scene(path.string(), "the file", std::string(format.name),
+                  "this program reads glTF 2.0: export it as .glb (in Blender: File > Export > glTF 2.0)");
+    }
+}
+
 void check_version(const json& document, const std::string& file) {
     if (!document.is_object()) bad_scene(file, "the JSON", json_text(document), "it must be an object");
     const json asset = document.value("asset", json());
@@ -149,9 +181,9 @@ public:
         if (const auto uri = buffer.find("uri"); uri != buffer.end()) {
             return read_named(uri->get_ref<const std::string&>(), i, why);
         }
-        static const json::json_pointer fallback_pointer("/extensions/EXT_meshopt_compression/fallback");
-        if (buffer.value(fallback_pointer, false)) {
-            why = "it is a fallback for programs without EXT_meshopt_compression, and holds nothing";
+        const char* extension = meshopt_extension(buffer);
+        if (extension && buffer["extensions"][extension].value("fallback", false)) {
+            why = fmt::format("it is a fallback for programs without {}, and holds nothing", extension);
             return nullptr;
         }
         if (i == 0 && binary_) return std::make_shared<const Bytes>(binary_->begin(), binary_->end());
@@ -164,7 +196,7 @@ private:
         std::shared_ptr<const Bytes>& known = read_[uri];
         if (known) return known;
         std::optional<Bytes> bytes =
-            read_uri(uri, needed_[uri], fmt::format("buffers[{}].uri", i), file_.name, file_.hash, why);
+            read_uri(uri, needed_[uri], fmt::format("buffers[{}].uri", i), file_, file_.hash, why);
         if (!bytes) return nullptr;
         if (!is_data_uri(uri)) file_.bytes += bytes->size();
         return known = std::make_shared<const Bytes>(std::move(*bytes));
@@ -177,17 +209,43 @@ private:
     std::map<std::string_view, std::shared_ptr<const Bytes>> read_;
 };
 
+std::filesystem::path canonical_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    const std::filesystem::path canonical = std::filesystem::canonical(folder, error);
+    if (error || !std::filesystem::is_directory(canonical, error)) {
+        throw Error(ExitCode::no_input, fmt::format("--root {}: no such folder", folder.string()));
+    }
+    return canonical;
+}
+
+/// The file itself and those that its buffers and images name.
+std::vector<std::filesystem::path> named_files(const json& document, const std::filesystem::path& path) {
+    std::vector<std::filesystem::path> files{path};
+    for (const char* array : {"buffers", "images"}) {
+        for (const json& element : document.value(array, json::array())) {
+            const std::string uri = element.value("uri", "");
+            if (is_data_uri(uri)) continue;
+            if (const auto file = resolve_uri(path.parent_path(), uri)) files.push_back(*file);
+        }
+    }
+    return files;
+}
+
 }  // namespace
 
-GltfFile read_gltf_file(const std::filesystem::path& path) {
-    GltfFile file{.name = path.string(), .document = {}, .buffers = {}, .bytes = 0, .hash = fnv1a_start};
+GltfFile read_gltf_file(const std::filesystem::path& path, const std::optional<std::filesystem::path>& root) {
+    GltfFile file;
+    file.name = path.string();
+    file.hash = fnv1a_start;
     std::string why;
     const std::optional<Bytes> bytes = read_bytes(path, max_gltf_bytes + 1, why);
     if (!bytes) throw Error(ExitCode::no_input, fmt::format("{}: {}", file.name, why));
+    file.root = root ? canonical_folder(*root) : default_root(path);
     check_size(bytes->size(), "the size of the file", file.name);
     file.hash = fnv1a(*bytes, file.hash);
     file.bytes = bytes->size();
 
+    check_foreign(*bytes, path);
     const Container container = split(*bytes, file.name);
     file.document = parse_json(container.json, file.name);
     check_version(file.document, file.name);
@@ -197,6 +255,7 @@ GltfFile read_gltf_file(const std::filesystem::path& path) {
     }
     check_gltf_schema(file.document, file.name);
 
+    file.files = named_files(file.document, path);
     const json buffers = file.document.value("buffers", json::array());
     BufferReader reader(buffers, container.binary, file);
     std::size_t total_size = 0;

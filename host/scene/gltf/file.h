@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,16 +22,19 @@ struct GltfBuffer {
 };
 
 struct GltfFile {
-    std::string name;                 // the path as given, for messages
-    nlohmann::json document;          // passed check_gltf_schema
-    std::vector<GltfBuffer> buffers;  // as in the document
-    std::size_t bytes = 0;            // of the file and of the external buffers that were read
-    std::uint64_t hash = 0;           // FNV-1a of the file's bytes, then of each external buffer's
+    std::string name;                          // the path as given, for messages
+    std::filesystem::path root;                // canonical; what it names by URI must lie below
+    nlohmann::json document;                   // passed check_gltf_schema
+    std::vector<GltfBuffer> buffers;           // as in the document
+    std::size_t bytes = 0;                     // of the file and of the external buffers that were read
+    std::uint64_t hash = 0;                    // FNV-1a of the file's bytes, then of each external buffer's
+    std::vector<std::filesystem::path> files;  // itself and all that it names, whether they are there and read or not
 };
 
-/// Reads the file, tells .gltf from .glb by its first bytes, and resolves every buffer: data URI, file beside it (never
-/// outside its folder), or the binary chunk. What no mesh needs, such as an animation's data, may be absent.
-/// Throws Error: no_input where the file is missing or unreadable, else bad_scene.
-GltfFile read_gltf_file(const std::filesystem::path& path);
+/// Reads the file, tells .gltf from .glb by its first bytes, and resolves every buffer: data URI, file below `root` (by
+/// default: default_root()), or the binary chunk. What no mesh needs, such as an animation's data, may be absent.
+/// Throws Error: no_input where the file or the root is missing or unreadable, else bad_scene.
+GltfFile read_gltf_file(const std::filesystem::path& path,
+                        const std::optional<std::filesystem::path>& root = std::nullopt);
 
 }  // namespace vkcppm

@@ -1,12 +1,15 @@
 #include "scene/gltf/gltf.h"
 
 #include <algorithm>
+#include <iterator>
 #include <new>
 
 #include <tiny_gltf.h>
 
+#include "core/fnv1a.h"
 #include "scene/bad_scene.h"
 #include "scene/gltf/accessors.h"
+#include "scene/gltf/animation.h"
 #include "scene/gltf/cameras.h"
 #include "scene/gltf/file.h"
 #include "scene/gltf/images.h"
@@ -15,6 +18,8 @@
 #include "scene/gltf/meshes.h"
 #include "scene/gltf/nodes.h"
 #include "scene/gltf/schema.h"
+#include "scene/gltf/skins.h"
+#include "scene/gltf/variants.h"
 #include "scene/gltf/views.h"
 #include "scene/warnings.h"
 
@@ -51,34 +56,51 @@ tinygltf::Model parse_model(const GltfFile& file) {
     return model;
 }
 
-void warn_of_ignored_parts(const GltfFile& file, Warnings& warnings) {
+void warn_of_ignored_parts(const GltfFile& file, const GltfOptions& options, Warnings& warnings) {
     const auto unsupported = unsupported_extensions(file.document, "extensionsUsed", file.name);
     if (!unsupported.empty()) {
         warnings.add("ignored, this program lacks them", fmt::format("extensions {}", fmt::join(unsupported, ", ")));
     }
-    if (!file.document.value("animations", json::array()).empty()) {
-        warnings.add("ignored, the scene is at rest", "animations");
+    if (options.animation.empty() && !file.document.value("animations", json::array()).empty()) {
+        warnings.add("at rest, --animation NAME moves them", "animations");
     }
 }
 
-Scene read_scene(const GltfFile& file, const tinygltf::Model& model, Sharing sharing) {
+/// The hash of what the file is read as: another pose or variant is another scene.
+std::uint64_t hash_of(const GltfOptions& options, std::uint64_t hash) {
+    if (!options.animation.empty()) {
+        hash = fnv1a_of(fmt::format("--animation {} --at {}", options.animation, options.at), hash);
+    }
+    if (!options.variant.empty()) hash = fnv1a_of("--variant " + options.variant, hash);
+    return hash;
+}
+
+Scene read_scene(GltfFile& file, tinygltf::Model& model, const GltfOptions& options) {
     Scene scene;
     Warnings warnings;
-    warn_of_ignored_parts(file, warnings);
+    warn_of_ignored_parts(file, options, warnings);
     GltfViews views(file);
     GltfAccessors accessors(file, model, views);
     GltfImages images(file, views, warnings);
+    if (!options.variant.empty()) use_variant(file, model, options.variant);
+    if (!options.animation.empty()) pose_nodes(file, model, accessors, options.animation, options.at, warnings);
     const std::vector<PlacedNode> nodes = place_nodes(file, model, warnings);
-    scene.materials = read_materials(file, used_materials(file, model, nodes), images, warnings);
+    std::vector<PlacedNode> visible;
+    std::ranges::copy_if(nodes, std::back_inserter(visible), &PlacedNode::is_visible);
+    GltfSkins skins(file, accessors, nodes, warnings);
+    scene.materials = read_materials(file, used_materials(file, model, visible), images, warnings);
     scene.images = images.take_images();
-    scene.hash = images.hash();
-    add_meshes(file, model, accessors, nodes, sharing, scene, warnings);
+    scene.hash = hash_of(options, images.hash());
+    scene.inputs = file.files;
+    add_meshes(file, model, accessors, skins, visible, options.sharing, scene, warnings);
     for (const PlacedNode& node : nodes) {
         if (auto camera = read_camera(file, model, node, warnings)) scene.cameras.push_back(std::move(*camera));
+    }
+    for (const PlacedNode& node : visible) {
         if (auto light = read_light(file, model, node, warnings)) scene.lights.push_back(std::move(*light));
     }
     if (scene.cameras.empty()) {
-        warnings.add("there is no perspective camera, one that frames it is used", "the scene");
+        warnings.add("there is no camera, one that frames it is used", "the scene");
         scene.cameras.push_back(framing_camera(scene));
     }
     if (scene.triangles.empty()) warnings.add("there is no triangle", "the scene");
@@ -88,11 +110,11 @@ Scene read_scene(const GltfFile& file, const tinygltf::Model& model, Sharing sha
 
 }  // namespace
 
-Scene load_gltf(const std::filesystem::path& path, Sharing sharing) {
+Scene load_gltf(const std::filesystem::path& path, const GltfOptions& options) {
     try {
-        const GltfFile file = read_gltf_file(path);
-        const tinygltf::Model model = parse_model(file);
-        Scene scene = read_scene(file, model, sharing);
+        GltfFile file = read_gltf_file(path, options.root);
+        tinygltf::Model model = parse_model(file);
+        Scene scene = read_scene(file, model, options);
         scene.file = path;
         return scene;
     } catch (const Error&) {

@@ -21,10 +21,10 @@ public:
     GltfImages(const GltfFile& file, GltfViews& views, Warnings& warnings);
 
     /// The place of images[i] among those to decode, the next one on its first use; images with one source share it.
-    /// None, with a warning, where its file is not there or in a format that only an extension allows (KTX2, WebP,
-    /// DDS): the factor alone is a picture that still says something.
-    /// Throws Error(bad_scene) where the image has no source or two, lies outside of the scene's folder, is broken, or
-    /// is too large, alone or with the others.
+    /// None, with a warning, where its file is not there, lies outside of the file's root or is in a format that only
+    /// an extension allows (KTX2, WebP, DDS): the factor alone is a picture that still says something.
+    /// Throws Error(bad_scene) where the image has no source or two, is broken, or is too large, alone or with the
+    /// others.
     std::optional<std::uint32_t> index(std::size_t image);
 
     /// Decodes all, each once, on all cores, and hands them over in the order of index(). Throws Error(bad_scene) where

@@ -1,6 +1,7 @@
 #include "scene/gltf/lights.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <numbers>
 
 #include <glm/geometric.hpp>
@@ -35,7 +36,8 @@ void read_cone(const tinygltf::SpotLight& spot, const std::string& object, Punct
 
 std::optional<PunctualLight> read_light(const GltfFile& file, const tinygltf::Model& model, const PlacedNode& placed,
                                         Warnings& warnings) {
-    const auto& [index, to_world] = placed;
+    const int index = placed.index;
+    const glm::dmat4& to_world = placed.to_world;
     const tinygltf::Node& node = model.nodes[index];
     const auto extension = node.extensions.find("KHR_lights_punctual");
     if (extension == node.extensions.end()) return std::nullopt;
@@ -58,7 +60,14 @@ std::optional<PunctualLight> read_light(const GltfFile& file, const tinygltf::Mo
         }
     }
     if (light.kind == PunctualLight::Kind::spot) read_cone(source.spot, object, light, file.name, warnings);
-    if (source.range != 0.0) warnings.add("ignored, light falls off without end", object + ".range");
+    const nlohmann::json& json = file.document["extensions"]["KHR_lights_punctual"]["lights"][light_index];
+    if (light.kind != PunctualLight::Kind::directional && json.contains("range")) {
+        if (!(source.range > 0.0)) {
+            warnings.add("ignored, it must be greater than 0", fmt::format("{}.range = {}", object, source.range));
+        } else if (source.range <= FLT_MAX) {
+            light.range = source.range;
+        }
+    }
     return light;
 }
 

@@ -25,7 +25,7 @@ constexpr Expansion max_vertices{256, std::size_t(1) << 27};     // of all insta
 constexpr Expansion max_primitives{256, std::size_t(1) << 24};   // of all instances, empty ones included
 constexpr Expansion max_instances{256, std::size_t(1) << 24};    // of meshes
 constexpr Expansion max_read_vectors{16, std::size_t(1) << 27};  // of all accessors together
-constexpr Expansion max_decoded_bytes{64, max_gltf_bytes};       // of all compressed bufferViews: the best of meshopt
+constexpr Expansion max_decoded_bytes{256, max_gltf_bytes};      // of all compressed bufferViews
 constexpr std::size_t max_image_side = 16384;                    // texels
 constexpr std::size_t max_texels_per_byte = 8256;                // of an image: Deflate's 1032 to 1, of 1-bit texels
 constexpr double max_coordinate = FLT_MAX;                       // m; its square is finite in double

@@ -35,6 +35,7 @@ struct Vertex {
 // node 76 (host/flat/bvh.cpp).
 constexpr std::size_t bytes_a_triangle = 128;
 
+const Placement identity = *Placement::of(glm::dmat4(1.0));
 const glm::vec2 no_uv(0.0f);
 const glm::vec4 white(1.0f);
 const glm::vec4 no_tangent(0.0f);
@@ -60,10 +61,10 @@ template <typename T> std::optional<T> element(const std::vector<T>& values, std
 constexpr std::size_t most_copied = std::size_t(1) << 18;
 constexpr std::size_t fewest_shared = 8;
 
-/// A mesh as nodes show it: of those with weights of their own for its morph targets each has a mesh of its own.
+/// A mesh as nodes show it.
 struct MeshKey {
     int mesh;
-    int node;  // -1 but for those
+    int owner;  // PrimitiveReader::owner
     auto operator<=>(const MeshKey&) const = default;
 };
 
@@ -78,12 +79,13 @@ struct MeshUse {
 
 class MeshAdder {
 public:
-    MeshAdder(const GltfFile& file, const tinygltf::Model& model, GltfAccessors& accessors, Sharing sharing,
-              Scene& scene, Warnings& warnings)
+    MeshAdder(const GltfFile& file, const tinygltf::Model& model, GltfAccessors& accessors, GltfSkins& skins,
+              Sharing sharing, Scene& scene, Warnings& warnings)
         : file_(file),
           model_(model),
           accessors_(accessors),
-          primitives_(file, model, accessors, warnings),
+          skins_(skins),
+          primitives_(file, model, accessors, skins, warnings),
           sharing_(sharing),
           scene_(scene),
           warnings_(warnings),
@@ -110,13 +112,7 @@ public:
     }
 
 private:
-    MeshKey key_of(int node) const {
-        const int mesh = model_.nodes[node].mesh;
-        const bool own_weights = std::ranges::any_of(model_.meshes[mesh].primitives,
-                                                     [](const auto& source) { return !source.targets.empty(); }) &&
-                                 file_.document["nodes"][node].contains("weights");
-        return {mesh, own_weights ? node : -1};
-    }
+    MeshKey key_of(int node) { return {model_.nodes[node].mesh, primitives_.owner(node)}; }
 
     bool emits(int mesh) const {
         return std::ranges::any_of(model_.meshes[mesh].primitives, [&](const tinygltf::Primitive& source) {
@@ -139,7 +135,7 @@ private:
             const int mesh = model_.nodes[node.index].mesh;
             if (mesh < 0) continue;
             // No product overflows: both of its factors are within their limits.
-            const std::size_t count = instance_count(file_, accessors_, node.index);
+            const std::size_t count = skins_.joints(node.index) ? 1 : instance_count(file_, accessors_, node.index);
             check_total(count, max_instances, fmt::format("instances of nodes[{}]", node.index), file_);
             check_total(all_instances += count, max_instances, "instances", file_);
             MeshUse& use = uses_[key_of(node.index)];
@@ -169,10 +165,14 @@ private:
 
     void add_node(const PlacedNode& node) {
         const std::string object = fmt::format("nodes[{}]", node.index);
-        if (model_.nodes[node.index].skin >= 0) warnings_.add("its skin is ignored, it is at rest", object);
         scene_.mesh_nodes.push_back(
             {std::uint32_t(node.index), model_.nodes[node.index].name, std::uint32_t(scene_.triangles.size())});
         MeshUse& use = uses_.at(key_of(node.index));
+        if (skins_.joints(node.index)) {
+            // Joints place it in the world; what of it has no weights stands where its node does, if that can be.
+            add_primitives(node.index, Placement::of(node.to_world).value_or(identity), scene_.triangles);
+            return;
+        }
         for (const glm::dmat4& to_world : instances(file_, accessors_, node)) {
             const std::optional<Placement> placement = Placement::of(to_world);
             if (!placement) {
@@ -201,7 +201,7 @@ private:
         if (!use.shared) {
             use.shared = std::uint32_t(scene_.meshes.size());
             scene_.meshes.push_back({std::uint32_t(shared_triangles_.size()), mesh_node});
-            add_primitives(node, *Placement::of(glm::dmat4(1.0)), shared_triangles_);
+            add_primitives(node, identity, shared_triangles_);
             SceneBox& box = boxes_.emplace_back(SceneBox::nothing());
             for (std::size_t i = scene_.meshes.back().first_triangle; i < shared_triangles_.size(); ++i) {
                 for (const std::uint32_t v : shared_triangles_[i].vertex) box.grow(scene_.positions[v]);
@@ -230,10 +230,11 @@ private:
         }
         const std::uint32_t material = material_index(source);
         const LocalPrimitive& local = primitives_.read(node, mesh, index, vertex_needs(scene_.materials[material]));
+        const Placement& at = local.is_posed ? identity : placement;
         if (local.normals) {
-            add_smooth(local, placement, material, first_vertex(local, node, placement, blocks), triangles);
+            add_smooth(local, at, material, first_vertex(local, node, at, blocks), triangles);
         } else {
-            add_flat(local, node, placement, material, triangles);
+            add_flat(local, node, at, material, triangles);
         }
     }
 
@@ -360,6 +361,7 @@ private:
     const GltfFile& file_;
     const tinygltf::Model& model_;
     GltfAccessors& accessors_;
+    GltfSkins& skins_;
     PrimitiveReader primitives_;
     const Sharing sharing_;
     Scene& scene_;
@@ -388,9 +390,9 @@ std::vector<bool> used_materials(const GltfFile& file, const tinygltf::Model& mo
     return is_used;
 }
 
-void add_meshes(const GltfFile& file, const tinygltf::Model& model, GltfAccessors& accessors,
+void add_meshes(const GltfFile& file, const tinygltf::Model& model, GltfAccessors& accessors, GltfSkins& skins,
                 const std::vector<PlacedNode>& nodes, Sharing sharing, Scene& scene, Warnings& warnings) {
-    MeshAdder(file, model, accessors, sharing, scene, warnings).add(nodes);
+    MeshAdder(file, model, accessors, skins, sharing, scene, warnings).add(nodes);
 }
 
 }  // namespace vkcppm

@@ -1,5 +1,5 @@
 #pragma once
-// EXT_meshopt_compression: the bytes of a bufferView from a fraction of them.
+// EXT_ and KHR_meshopt_compression: the bytes of a bufferView from a fraction of them.
 
 #include <cstdint>
 #include <span>
@@ -10,10 +10,14 @@
 
 namespace vkcppm {
 
-/// [byteStride * count] bytes that `compressed` expands to. `extension` is the bufferView's (checked by the schema),
-/// named `object` in messages; `size` the view's byteLength, which the result must have. Throws Error(bad_scene) where
-/// the two disagree, a number does not suit the mode or the filter, or the data is broken.
-std::vector<std::uint8_t> decode_meshopt(const nlohmann::json& extension, std::span<const std::uint8_t> compressed,
-                                         std::size_t size, const std::string& object, const std::string& file);
+/// The extension by which a bufferView is compressed, or a buffer is a fallback: EXT_meshopt_compression or its
+/// successor, KHR_meshopt_compression; null where it has neither.
+const char* meshopt_extension(const nlohmann::json& object);
+
+/// [byteStride * count] bytes that `compressed` expands to. `view` is a bufferView (checked by the schema) with such an
+/// extension, named `view_name` in messages. Throws Error(bad_scene) where the sizes of the two disagree, a number does
+/// not suit the mode or the filter, or the data is broken.
+std::vector<std::uint8_t> decode_meshopt(const nlohmann::json& view, std::span<const std::uint8_t> compressed,
+                                         const std::string& view_name, const std::string& file);
 
 }  // namespace vkcppm

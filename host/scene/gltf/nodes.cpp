@@ -139,6 +139,12 @@ glm::dmat4 local_transform(const GltfFile& file, const tinygltf::Model& model, i
     return compose(translation, rotation, scale);
 }
 
+/// KHR_node_visibility.
+bool is_visible(const GltfFile& file, int node) {
+    static const json::json_pointer pointer("/extensions/KHR_node_visibility/visible");
+    return file.document["nodes"][node].value(pointer, true);
+}
+
 }  // namespace
 
 std::vector<PlacedNode> place_nodes(const GltfFile& file, const tinygltf::Model& model, Warnings& warnings) {
@@ -154,9 +160,9 @@ std::vector<PlacedNode> place_nodes(const GltfFile& file, const tinygltf::Model&
         const glm::dmat4 to_world = top.to_world * local_transform(file, model, index, warnings);
         check_finite(
             to_world, [&] { return fmt::format("nodes[{}]", index); }, file.name);
-        placed.push_back({index, to_world});
+        placed.push_back({index, to_world, top.is_visible && is_visible(file, index)});
         for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
-            stack.push_back({*child, to_world});
+            stack.push_back({*child, to_world, placed.back().is_visible});
         }
     }
     return placed;

@@ -14,6 +14,7 @@ namespace vkcppm {
 struct PlacedNode {
     int index;
     glm::dmat4 to_world;
+    bool is_visible = true;  // KHR_node_visibility, of itself and all above it: its mesh and its light count
 };
 
 /// The nodes of the default scene (else of the first, else all) and all below them, depth first, in the order of the

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include <tiny_gltf.h>
 
 #include "scene/bad_scene.h"
 #include "scene/gltf/limits.h"
+#include "scene/gltf/placement.h"
 #include "scene/gltf/values.h"
 
 namespace vkcppm {
@@ -56,8 +58,7 @@ std::size_t triangle_count(const tinygltf::Primitive& source, const GltfAccessor
 
 const LocalPrimitive& PrimitiveReader::read(int node, int mesh, std::size_t index, const VertexNeeds& needs) {
     const tinygltf::Primitive& source = model_.meshes[mesh].primitives[index];
-    const bool has_own_weights = !source.targets.empty() && file_.document["nodes"][node].contains("weights");
-    const auto [found, is_new] = primitives_.try_emplace({mesh, index, has_own_weights ? node : -1});
+    const auto [found, is_new] = primitives_.try_emplace({mesh, index, owner(node)});
     if (!is_new) return found->second;
 
     const std::string object = fmt::format("meshes[{}].primitives[{}]", mesh, index);
@@ -71,7 +72,16 @@ const LocalPrimitive& PrimitiveReader::read(int node, int mesh, std::size_t inde
         bad_scene(file_.name, fmt::format("the number of weights of {}", object), fmt::to_string(weights.size()),
                   fmt::format("it has {} targets", source.targets.size()));
     }
-    return found->second = read_new(source, object, needs, weights);
+    found->second = read_new(source, object, needs, weights);
+    if (const JointMatrices* joints = skins_.joints(node)) pose(found->second, source, *joints, object);
+    return found->second;
+}
+
+int PrimitiveReader::owner(int node) {
+    const auto has_targets = [](const tinygltf::Primitive& source) { return !source.targets.empty(); };
+    const bool has_own_weights = file_.document["nodes"][node].contains("weights") &&
+                                 std::ranges::any_of(model_.meshes[model_.nodes[node].mesh].primitives, has_targets);
+    return has_own_weights || skins_.joints(node) ? node : -1;
 }
 
 /// The default weights of a mesh's morph targets: the node's, else the mesh's, else none.
@@ -131,8 +141,8 @@ SharedVectors<3> PrimitiveReader::morphed(const SharedVectors<3>& base, const ti
                                           const char* name, const std::vector<double>& weights,
                                           const std::string& object) {
     if (!base || is_all_zero(weights)) return base;
-    morphed_vectors_ += base->size() * weights.size();
-    check_total(morphed_vectors_, max_read_vectors, "vectors of morph targets", file_);
+    moved_vectors_ += base->size() * weights.size();
+    check_total(moved_vectors_, max_read_vectors, "vectors of morph targets", file_);
     auto moved = std::make_shared<std::vector<glm::dvec3>>(*base);
     for (std::size_t k = 0; k < weights.size(); ++k) {
         const auto target = source.targets[k].find(name);
@@ -142,6 +152,69 @@ SharedVectors<3> PrimitiveReader::morphed(const SharedVectors<3>& base, const ti
         for (std::size_t i = 0; i < moved->size(); ++i) (*moved)[i] += weights[k] * (*displacement)[i];
     }
     return moved;
+}
+
+/// Puts the vertices where the joints that they follow put them, in proportion to their weights, whose sum is taken for
+/// 1 (glTF 2.0, section 3.7.3.3).
+void PrimitiveReader::pose(LocalPrimitive& primitive, const tinygltf::Primitive& source, const JointMatrices& joints,
+                           const std::string& object) {
+    const std::size_t vertices = primitive.positions->size();
+    std::vector<std::pair<SharedVectors<4>, SharedVectors<4>>> sets;
+    for (;;) {
+        const std::string joints_name = fmt::format("JOINTS_{}", sets.size());
+        const std::string weights_name = fmt::format("WEIGHTS_{}", sets.size());
+        const auto of = attribute<4>(source, joints_name.c_str(), vertices, object);
+        const auto weights = attribute<4>(source, weights_name.c_str(), vertices, object);
+        if (!of || !weights) break;
+        sets.emplace_back(of, weights);
+    }
+    if (sets.empty() || joints.empty()) {
+        warnings_.add("its skin is ignored, it has no joints and weights", object);
+        return;
+    }
+    moved_vectors_ += vertices * sets.size();
+    check_total(moved_vectors_, max_read_vectors, "vectors that joints move", file_);
+
+    auto positions = std::make_shared<std::vector<glm::dvec3>>(*primitive.positions);
+    auto normals = primitive.normals ? std::make_shared<std::vector<glm::dvec3>>(*primitive.normals) : nullptr;
+    auto tangents = primitive.tangents ? std::make_shared<std::vector<glm::dvec4>>(*primitive.tangents) : nullptr;
+    std::vector<bool> is_mirrored(vertices);
+    for (std::size_t i = 0; i < vertices; ++i) {
+        glm::dmat4 sum(0.0);
+        double weights = 0.0;
+        for (const auto& [of, weight] : sets) {
+            for (int k = 0; k < 4; ++k) {
+                const double joint = (*of)[i][k];
+                if ((*weight)[i][k] == 0.0) continue;
+                if (!(joint >= 0.0 && joint < double(joints.size()))) {
+                    bad_scene(file_.name, fmt::format("joint {} of vertex {} of {}", k, i, object),
+                              fmt::to_string(joint), fmt::format("its skin has {}", joints.size()));
+                }
+                sum += (*weight)[i][k] * joints[std::size_t(joint)];
+                weights += (*weight)[i][k];
+            }
+        }
+        if (weights > 0.0 && std::isfinite(weights)) {
+            sum /= weights;
+        } else {
+            warnings_.add("vertices without weights, they follow the first joint", object);
+            sum = joints.front();
+        }
+        (*positions)[i] = glm::dvec3(sum * glm::dvec4((*positions)[i], 1.0));
+        const std::optional<Placement> placement = Placement::of(sum);
+        is_mirrored[i] = placement && placement->mirrored;
+        // Without a direction the triangle's own is taken.
+        if (normals) (*normals)[i] = placement ? placement->normal((*normals)[i]) : glm::vec3(0.0f);
+        if (tangents) (*tangents)[i] = placement ? placement->tangent((*tangents)[i]) : glm::vec4(0.0f);
+    }
+    check_finite(*positions, "posed", object);
+    primitive.positions = positions;
+    primitive.normals = normals;
+    primitive.tangents = tangents;
+    for (CornerIndices& corners : primitive.triangles) {
+        if (is_mirrored[corners[0]]) std::swap(corners[1], corners[2]);
+    }
+    primitive.is_posed = true;
 }
 
 void PrimitiveReader::check_finite(const std::vector<glm::dvec3>& positions, const std::string& accessor,

@@ -12,6 +12,7 @@
 #include "scene/gltf/accessors.h"
 #include "scene/gltf/file.h"
 #include "scene/gltf/materials.h"
+#include "scene/gltf/skins.h"
 #include "scene/warnings.h"
 
 namespace tinygltf {
@@ -30,6 +31,7 @@ struct LocalPrimitive {
     SharedVectors<4> colors;             // 0..1
     SharedVectors<4> tangents;
     std::vector<CornerIndices> triangles;  // into the above, in order and winding of the file
+    bool is_posed = false;                 // by joints, and so in the world already
 };
 
 /// Whether a primitive makes triangles at all.
@@ -41,9 +43,13 @@ std::size_t triangle_count(const tinygltf::Primitive& source, const GltfAccessor
 /// Reads primitives, each once. Throws Error(bad_scene) with object, value, limit and file.
 class PrimitiveReader {
 public:
-    /// Keeps all four.
-    PrimitiveReader(const GltfFile& file, const tinygltf::Model& model, GltfAccessors& accessors, Warnings& warnings)
-        : file_(file), model_(model), accessors_(accessors), warnings_(warnings) {}
+    /// Keeps all five.
+    PrimitiveReader(const GltfFile& file, const tinygltf::Model& model, GltfAccessors& accessors, GltfSkins& skins,
+                    Warnings& warnings)
+        : file_(file), model_(model), accessors_(accessors), skins_(skins), warnings_(warnings) {}
+
+    /// The node whose weights or joints make of its mesh one of its own; -1 where the mesh is that of all nodes.
+    int owner(int node);
 
     /// meshes[mesh].primitives[index] as `node` shows it, which has_triangles(). `needs` is its material's.
     const LocalPrimitive& read(int node, int mesh, std::size_t index, const VertexNeeds& needs);
@@ -67,16 +73,19 @@ private:
                                               const std::string& object);
     void check_finite(const std::vector<glm::dvec3>& positions, const std::string& accessor,
                       const std::string& object) const;
+    void pose(LocalPrimitive& primitive, const tinygltf::Primitive& source, const JointMatrices& joints,
+              const std::string& object);
 
     const GltfFile& file_;
     const tinygltf::Model& model_;
     GltfAccessors& accessors_;
+    GltfSkins& skins_;
     Warnings& warnings_;
-    std::map<std::tuple<int, std::size_t, int>, LocalPrimitive> primitives_;  // by mesh, primitive, node with weights
+    std::map<std::tuple<int, std::size_t, int>, LocalPrimitive> primitives_;  // by mesh, primitive, owner
     std::map<int, SharedVectors<2>> uv_;                                      // by accessor
     std::map<int, SharedVectors<4>> colors_;                                  // by accessor; null: all white
     std::set<int> finite_;                                                    // accessors known to be finite
-    std::size_t morphed_vectors_ = 0;
+    std::size_t moved_vectors_ = 0;                                           // by morph targets and joints
 };
 
 }  // namespace vkcppm

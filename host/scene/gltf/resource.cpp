@@ -35,34 +35,41 @@ std::optional<Bytes> read_bytes(const std::filesystem::path& path, std::size_t l
 
 namespace {
 
-/// Refuses a file that is outside of `folder` once symbolic links are followed: an archive may bring some.
-void check_inside(const std::filesystem::path& path, const std::filesystem::path& folder, const std::string& uri,
-                  const std::string& object, const std::string& file) {
+/// Whether a file, or where it would be, is below `root` once symbolic links are followed: an archive may bring some.
+bool is_inside(const std::filesystem::path& path, const std::filesystem::path& root) {
     std::error_code error;
-    const std::filesystem::path target = std::filesystem::canonical(path, error);
-    if (error) return;  // there is no such file
-    const std::filesystem::path root = std::filesystem::canonical(folder.empty() ? "." : folder, error);
-    if (*target.lexically_relative(root).begin() != "..") return;
-    bad_scene(file, object, json_text(uri),
-              fmt::format("it must lie inside the scene's folder, it is a link to {}", target.string()));
+    const std::filesystem::path target = std::filesystem::weakly_canonical(std::filesystem::absolute(path), error);
+    if (error) return false;
+    return *target.lexically_relative(root).begin() != "..";
 }
 
 }  // namespace
 
+std::filesystem::path default_root(const std::filesystem::path& file) {
+    const std::filesystem::path folder = std::filesystem::canonical(std::filesystem::absolute(file)).parent_path();
+    const std::filesystem::path above = folder.parent_path();
+    return above == above.root_path() ? folder : above;
+}
+
 std::optional<Bytes> read_uri(const std::string& uri, std::size_t limit, const std::string& object,
-                              const std::string& file, std::uint64_t& hash, std::string& why) {
+                              const GltfFile& file, std::uint64_t& hash, std::string& why) {
     if (is_data_uri(uri)) {
         std::optional<Bytes> bytes = decode_data_uri(uri);
         if (!bytes) {
-            bad_scene(file, object, json_text(uri.substr(0, 50)), "its data must be valid base64 or percent-encoded");
+            bad_scene(file.name, object, json_text(uri.substr(0, 50)),
+                      "its data must be valid base64 or percent-encoded");
         }
         return bytes;
     }
-    const std::filesystem::path folder = std::filesystem::path(file).parent_path();
-    const std::optional<std::filesystem::path> path = resolve_uri(folder, uri);
-    if (!path) bad_scene(file, object, json_text(uri), "it must be a relative path inside the scene's folder");
-    check_inside(*path, folder, uri, object, file);
-    std::optional<Bytes> bytes = read_bytes(*path, limit, why);
+    const std::optional<std::filesystem::path> path = resolve_uri(std::filesystem::path(file.name).parent_path(), uri);
+    std::optional<Bytes> bytes;
+    if (!path) {
+        why = "not a relative path";
+    } else if (!is_inside(*path, file.root)) {
+        why = fmt::format("outside of {}, see --root", file.root.string());
+    } else {
+        bytes = read_bytes(*path, limit, why);
+    }
     if (bytes) {
         hash = fnv1a(*bytes, hash);
     } else {

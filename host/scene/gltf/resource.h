@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "scene/gltf/file.h"
+
 namespace vkcppm {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -15,10 +17,14 @@ using Bytes = std::vector<std::uint8_t>;
 /// The first `limit` bytes of a regular file, or all; nothing, and why, where it fails. A pipe or a device could block.
 std::optional<Bytes> read_bytes(const std::filesystem::path& path, std::size_t limit, std::string& why);
 
-/// The bytes of a data URI, or the first `limit` of the file that a relative URI means below the folder of `file`,
-/// which go into `hash` as well; nothing, and why, where there is no such file. `object` has the URI, for messages.
-/// Throws Error(bad_scene) where a data URI is malformed or the file lies outside of the folder, be it by a link.
+/// The folder in which a scene's files may lie where none is given: that above the scene's own, so that ../textures is
+/// found, but never the root of the file system. `file` exists.
+std::filesystem::path default_root(const std::filesystem::path& file);
+
+/// The bytes of a data URI, or the first `limit` of the file that a relative URI means from the folder of `file` on,
+/// which go into `hash` as well; nothing, and why, where there is no such file or it lies outside of the file's root,
+/// be it by a link. `object` has the URI, for messages. Throws Error(bad_scene) where a data URI is malformed.
 std::optional<Bytes> read_uri(const std::string& uri, std::size_t limit, const std::string& object,
-                              const std::string& file, std::uint64_t& hash, std::string& why);
+                              const GltfFile& file, std::uint64_t& hash, std::string& why);
 
 }  // namespace vkcppm

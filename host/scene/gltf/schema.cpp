@@ -1,6 +1,7 @@
 #include "scene/gltf/schema.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <initializer_list>
 #include <limits>
@@ -72,13 +73,14 @@ constexpr std::string_view light_types[] = {"directional", "point", "spot"};
 constexpr std::string_view alpha_modes[] = {"OPAQUE", "MASK", "BLEND"};
 constexpr std::string_view meshopt_modes[] = {"ATTRIBUTES", "TRIANGLES", "INDICES"};
 constexpr std::string_view meshopt_filters[] = {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"};
+constexpr std::string_view khr_meshopt_filters[] = {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL", "COLOR"};
 constexpr int mag_filters[] = {9728, 9729};
 constexpr int min_filters[] = {9728, 9729, 9984, 9985, 9986, 9987};
 constexpr int wraps[] = {10497, 33071, 33648};
 
 constexpr std::string_view supported_extensions[] = {
-    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_lights_punctual",
-    "KHR_mesh_quantization",   "KHR_texture_transform",
+    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_lights_punctual", "KHR_materials_variants",
+    "KHR_mesh_quantization",   "KHR_meshopt_compression", "KHR_node_visibility", "KHR_texture_transform",
 #define EXTENSION(name, ...) #name,
 #include "scene/material_extensions.h"
 };
@@ -86,20 +88,26 @@ constexpr std::string_view supported_extensions[] = {
 constexpr const char* lights_pointer = "/extensions/KHR_lights_punctual/lights";
 
 constexpr Field fallback_fields[] = {{.name = "fallback", .kind = Kind::boolean}};
-constexpr Field buffer_extension_fields[] = {object("EXT_meshopt_compression", fallback_fields)};
+constexpr Field buffer_extension_fields[] = {object("EXT_meshopt_compression", fallback_fields),
+                                             object("KHR_meshopt_compression", fallback_fields)};
 constexpr Field buffer_fields[] = {
     integer("byteLength", 1, byte_limit, true),
     text("uri"),
     object("extensions", buffer_extension_fields),
 };
 
-constexpr Field meshopt_fields[] = {
-    index("buffer", "/buffers", true),          integer("byteOffset", 0, byte_limit),
-    integer("byteLength", 1, byte_limit, true), integer("byteStride", 2, 256, true),
-    integer("count", 1, byte_limit, true),      choice("mode", meshopt_modes, true),
-    choice("filter", meshopt_filters),
-};
-constexpr Field buffer_view_extension_fields[] = {object("EXT_meshopt_compression", meshopt_fields)};
+/// Of a compressed bufferView, with the filters that the extension has.
+#define MESHOPT_FIELDS(filters)                                                                                    \
+    {                                                                                                              \
+        index("buffer", "/buffers", true), integer("byteOffset", 0, byte_limit),                                   \
+            integer("byteLength", 1, byte_limit, true), integer("byteStride", 2, 256, true),                       \
+            integer("count", 1, byte_limit, true), choice("mode", meshopt_modes, true), choice("filter", filters), \
+    }
+constexpr Field meshopt_fields[] = MESHOPT_FIELDS(meshopt_filters);
+constexpr Field khr_meshopt_fields[] = MESHOPT_FIELDS(khr_meshopt_filters);
+#undef MESHOPT_FIELDS
+constexpr Field buffer_view_extension_fields[] = {object("EXT_meshopt_compression", meshopt_fields),
+                                                  object("KHR_meshopt_compression", khr_meshopt_fields)};
 constexpr Field buffer_view_fields[] = {
     index("buffer", "/buffers", true),
     integer("byteOffset", 0, byte_limit),
@@ -132,25 +140,37 @@ constexpr Field accessor_fields[] = {
     object("sparse", sparse_fields),
 };
 
+constexpr const char* variants_pointer = "/extensions/KHR_materials_variants/variants";
+constexpr Field variant_mapping_fields[] = {
+    {.name = "variants", .kind = Kind::indices, .required = true, .collection = variants_pointer},
+    index("material", "/materials", true),
+};
+constexpr Field variant_mappings_fields[] = {objects("mappings", variant_mapping_fields, true)};
+constexpr Field primitive_extension_fields[] = {object("KHR_materials_variants", variant_mappings_fields)};
+
 constexpr Field primitive_fields[] = {
     index_map("attributes", true),
     index("indices", "/accessors"),
     index("material", "/materials"),
     integer("mode", 0, 6),
     {.name = "targets", .kind = Kind::index_maps, .collection = "/accessors"},
+    object("extensions", primitive_extension_fields),
 };
 constexpr Field mesh_fields[] = {objects("primitives", primitive_fields, true), text("name"), numbers("weights", 0)};
 
 constexpr Field node_light_fields[] = {index("light", lights_pointer, true)};
 constexpr Field instancing_fields[] = {index_map("attributes", true)};
+constexpr Field visibility_fields[] = {{.name = "visible", .kind = Kind::boolean}};
 constexpr Field node_extension_fields[] = {
     object("KHR_lights_punctual", node_light_fields),
     object("EXT_mesh_gpu_instancing", instancing_fields),
+    object("KHR_node_visibility", visibility_fields),
 };
 constexpr Field node_fields[] = {
     text("name"),
     index("camera", "/cameras"),
     index("mesh", "/meshes"),
+    index("skin", "/skins"),
     {.name = "children", .kind = Kind::indices, .collection = "/nodes"},
     numbers("matrix", 16),
     numbers("translation", 3),
@@ -158,6 +178,27 @@ constexpr Field node_fields[] = {
     numbers("scale", 3),
     numbers("weights", 0),
     object("extensions", node_extension_fields),
+};
+
+constexpr Field skin_fields[] = {
+    index("inverseBindMatrices", "/accessors"),
+    {.name = "joints", .kind = Kind::indices, .required = true, .collection = "/nodes"},
+};
+
+constexpr std::string_view animation_paths[] = {"translation", "rotation", "scale", "weights", "pointer"};
+constexpr std::string_view interpolations[] = {"LINEAR", "STEP", "CUBICSPLINE"};
+constexpr Field channel_target_fields[] = {index("node", "/nodes"), choice("path", animation_paths, true)};
+constexpr Field channel_fields[] = {integer("sampler", 0, int_limit, true),
+                                    object("target", channel_target_fields, true)};
+constexpr Field animation_sampler_fields[] = {
+    index("input", "/accessors", true),
+    index("output", "/accessors", true),
+    choice("interpolation", interpolations),
+};
+constexpr Field animation_fields[] = {
+    text("name"),
+    objects("channels", channel_fields, true),
+    objects("samplers", animation_sampler_fields, true),
 };
 
 constexpr Field scene_fields[] = {text("name"), {.name = "nodes", .kind = Kind::indices, .collection = "/nodes"}};
@@ -241,7 +282,10 @@ constexpr Field light_fields[] = {
     number("range"), object("spot", spot_fields),
 };
 constexpr Field lights_fields[] = {objects("lights", light_fields, true)};
-constexpr Field root_extension_fields[] = {object("KHR_lights_punctual", lights_fields)};
+constexpr Field variant_fields[] = {text("name")};
+constexpr Field variants_fields[] = {objects("variants", variant_fields, true)};
+constexpr Field root_extension_fields[] = {object("KHR_lights_punctual", lights_fields),
+                                           object("KHR_materials_variants", variants_fields)};
 
 constexpr Field root_fields[] = {
     index("scene", "/scenes"),
@@ -256,6 +300,8 @@ constexpr Field root_fields[] = {
     objects("images", image_fields),
     objects("samplers", sampler_fields),
     objects("cameras", camera_fields),
+    objects("skins", skin_fields),
+    objects("animations", animation_fields),
     object("extensions", root_extension_fields),
 };
 
@@ -331,8 +377,18 @@ private:
         for (std::size_t i = 0; i < value.size(); ++i) check_number(value[i], element(path, i));
     }
 
-    void check_integer(const json& value, const std::string& path, const Field& field) const {
-        if (!value.is_number_integer()) fail(path, value, "it must be an integer");
+    /// Rewrites a number without a fraction as an integer: 100, 100.0 and 1e2 are one value (glTF 2.0, section 2.7).
+    static bool is_integer(json& value) {
+        if (value.is_number_integer()) return true;
+        if (!value.is_number_float()) return false;
+        const double number = value.get<double>();
+        if (!(std::abs(number) <= byte_limit) || number != std::trunc(number)) return false;
+        value = std::int64_t(number);
+        return true;
+    }
+
+    void check_integer(json& value, const std::string& path, const Field& field) const {
+        if (!is_integer(value)) fail(path, value, "it must be an integer");
         const double number = value.get<double>();
         if (number < field.minimum || number > field.maximum) {
             fail(path, value, fmt::format("it must lie in {:.0f} to {:.0f}", field.minimum, field.maximum));
@@ -345,17 +401,17 @@ private:
         }
     }
 
-    void check_index_map(const json& value, const std::string& path, const char* collection) const {
+    void check_index_map(json& value, const std::string& path, const char* collection) const {
         if (!value.is_object()) fail(path, value, "it must be an object");
-        for (const auto& [name, target] : value.items()) {
+        for (auto& [name, target] : value.items()) {
             check_index(target, path + "[" + json_text(name) + "]", collection);
         }
     }
 
-    void check_index(const json& value, const std::string& path, const char* collection) const {
+    void check_index(json& value, const std::string& path, const char* collection) const {
         const json::json_pointer pointer(collection);
         const std::size_t size = document_.contains(pointer) ? document_[pointer].size() : 0;
-        if (!value.is_number_integer()) fail(path, value, "it must be an index");
+        if (!is_integer(value)) fail(path, value, "it must be an index");
         if (value.get<double>() < 0.0 || value.get<double>() >= double(size)) {
             fail(path, value, fmt::format("{} has {}", pointer.back(), size));
         }

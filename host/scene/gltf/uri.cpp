@@ -74,7 +74,7 @@ std::optional<std::filesystem::path> resolve_uri(const std::filesystem::path& fo
     const std::optional<std::string> decoded = percent_decode(uri);
     if (!decoded || decoded->empty() || decoded->find('\0') != std::string::npos) return std::nullopt;
     const auto path = std::filesystem::path(*decoded).lexically_normal();
-    if (path.is_absolute() || *path.begin() == "..") return std::nullopt;
+    if (path.is_absolute()) return std::nullopt;
     return folder / path;
 }
 

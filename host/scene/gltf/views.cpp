@@ -11,10 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* meshopt = "EXT_meshopt_compression";
-
 std::string name_of(std::size_t view) { return fmt::format("bufferViews[{}]", view); }
-std::string extension_name(std::size_t view) { return fmt::format("bufferViews[{}].extensions.{}", view, meshopt); }
 
 }  // namespace
 
@@ -24,9 +21,9 @@ GltfViews::GltfViews(const GltfFile& file) : file_(file) {
     for (std::size_t i = 0; i < sources->size(); ++i) {
         const json& source = (*sources)[i];
         views_.push_back(range(source, name_of(i)));
-        const auto extensions = source.find("extensions");
-        if (extensions == source.end() || !extensions->contains(meshopt)) continue;
-        compressed_[i] = range((*extensions)[meshopt], extension_name(i));
+        const char* extension = meshopt_extension(source);
+        if (!extension) continue;
+        compressed_[i] = range(source["extensions"][extension], fmt::format("{}.extensions.{}", name_of(i), extension));
     }
 }
 
@@ -56,8 +53,8 @@ std::span<const std::uint8_t> GltfViews::bytes(std::size_t view) {
     if (is_new) {
         decoded_size_ += views_[view].size;
         check_total(decoded_size_, max_decoded_bytes, "bytes of the compressed bufferViews together", file_);
-        decoded->second = decode_meshopt(file_.document["bufferViews"][view]["extensions"][meshopt],
-                                         stored(source->second), views_[view].size, extension_name(view), file_.name);
+        decoded->second =
+            decode_meshopt(file_.document["bufferViews"][view], stored(source->second), name_of(view), file_.name);
     }
     return decoded->second;
 }

@@ -24,7 +24,7 @@ public:
     /// byteStride, 0 where the file states none.
     std::size_t stride(std::size_t view) const { return views_[view].stride; }
 
-    /// [size] the bytes of a view, decompressed once (EXT_meshopt_compression). Throws Error(bad_scene) where the
+    /// [size] the bytes of a view, decompressed once (meshopt_extension). Throws Error(bad_scene) where the
     /// buffer is absent or its data is broken.
     std::span<const std::uint8_t> bytes(std::size_t view);
 

@@ -37,8 +37,8 @@ std::string bad_line(const Error& error, const std::filesystem::path& file) {
     return "";
 }
 
-std::string read_scene(const std::filesystem::path& file, Sharing sharing) {
-    Scene scene = load_gltf(file, sharing);
+std::string read_scene(const std::filesystem::path& file, const GltfOptions& options) {
+    Scene scene = load_gltf(file, options);
     if (const std::string text = unsoundness(scene); !text.empty()) return "unsound: " + text;
     const auto is_line = [](const std::string& line) { return line.find('\n') == std::string::npos; };
     if (!std::ranges::all_of(diagnose(scene), is_line)) return "a diagnosis of two lines";
@@ -50,14 +50,16 @@ std::string read_scene(const std::filesystem::path& file, Sharing sharing) {
     return "";
 }
 
-/// With copies, mostly, and with instances wherever there can be some.
+/// With copies, mostly, with instances wherever there can be some, and in the midst of all animations.
 std::string read_scene(const std::filesystem::path& file) {
-    return read_scene(file, Sharing::by_cost) + read_scene(file, Sharing::always);
+    return read_scene(file, GltfOptions()) + read_scene(file, {.sharing = Sharing::always}) +
+           read_scene(file, {.animation = "all", .at = 0.3});
 }
 
 std::string read_environment_of(const std::filesystem::path& file) {
     std::uint64_t hash = fnv1a_start;
-    const Image image = read_environment(file, hash);
+    std::vector<std::string> warnings;
+    const Image image = read_environment(file, hash, warnings);
     return image.rgb.size() == image.extent.pixels() && !image.rgb.empty() ? "" : "an environment without pixels";
 }
 
