@@ -95,7 +95,11 @@ public:
     }
 
 private:
-    const Shell* crossed_by(const Shell& shell, const std::vector<const Shell*>& near) const {
+    /// One that this shell crosses, of those that have no more triangles: each pair is looked at from the larger.
+    const Shell* crossed_by(const Shell& shell, std::vector<const Shell*> near) const {
+        const auto size = [](const Shell* s) { return std::pair(s->triangles.size(), s->triangles.front()); };
+        std::erase_if(near, [&](const Shell* other) { return size(other) > size(&shell); });
+        if (near.empty()) return nullptr;
         std::vector<Entry> faces;
         for (const std::uint32_t i : shell.triangles) faces.emplace_back(box_of(corners_of(scene_, i)), i);
         const Tree tree(faces);
