@@ -196,7 +196,7 @@ private:
         std::shared_ptr<const Bytes>& known = read_[uri];
         if (known) return known;
         std::optional<Bytes> bytes =
-            read_uri(uri, needed_[uri], fmt::format("buffers[{}].uri", i), file_, file_.hash, why);
+            read_uri(uri, needed_[uri], fmt::format("buffers[{}].uri", i), file_.name, file_.root, file_.hash, why);
         if (!bytes) return nullptr;
         if (!is_data_uri(uri)) file_.bytes += bytes->size();
         return known = std::make_shared<const Bytes>(std::move(*bytes));

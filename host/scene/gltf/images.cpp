@@ -35,7 +35,7 @@ std::optional<std::uint32_t> GltfImages::index(std::size_t image) {
         return found->second;
     }
     std::string why;
-    std::optional<Bytes> bytes = read_uri(uri, max_gltf_bytes, object + ".uri", file_, hash_, why);
+    std::optional<Bytes> bytes = read_uri(uri, max_gltf_bytes, object + ".uri", file_.name, file_.root, hash_, why);
     if (!bytes) {
         warnings_.add("its textures are ignored, the image is absent", fmt::format("{} ({})", object, why));
         return found->second;

@@ -52,21 +52,21 @@ std::filesystem::path default_root(const std::filesystem::path& file) {
 }
 
 std::optional<Bytes> read_uri(const std::string& uri, std::size_t limit, const std::string& object,
-                              const GltfFile& file, std::uint64_t& hash, std::string& why) {
+                              const std::string& file, const std::filesystem::path& root, std::uint64_t& hash,
+                              std::string& why) {
     if (is_data_uri(uri)) {
         std::optional<Bytes> bytes = decode_data_uri(uri);
         if (!bytes) {
-            bad_scene(file.name, object, json_text(uri.substr(0, 50)),
-                      "its data must be valid base64 or percent-encoded");
+            bad_scene(file, object, json_text(uri.substr(0, 50)), "its data must be valid base64 or percent-encoded");
         }
         return bytes;
     }
-    const std::optional<std::filesystem::path> path = resolve_uri(std::filesystem::path(file.name).parent_path(), uri);
+    const std::optional<std::filesystem::path> path = resolve_uri(std::filesystem::path(file).parent_path(), uri);
     std::optional<Bytes> bytes;
     if (!path) {
         why = "not a relative path";
-    } else if (!is_inside(*path, file.root)) {
-        why = fmt::format("outside of {}, see --root", file.root.string());
+    } else if (!is_inside(*path, root)) {
+        why = fmt::format("outside of {}, see --root", root.string());
     } else {
         bytes = read_bytes(*path, limit, why);
     }
