@@ -11,6 +11,7 @@
 #include "app/checkpoint_file.h"
 #include "app/commands.h"
 #include "app/console.h"
+#include "app/display.h"
 #include "app/interrupt.h"
 #include "app/load.h"
 #include "app/outputs.h"
@@ -145,12 +146,15 @@ void write_outputs(const RenderOptions& options, const Scene& scene, const Rende
     } else {
         say_wrote(options.output);
     }
+    const Display display =
+        options.png ? display_of(options.display, rendering.image, options.png->string(), options.quiet) : Display();
     if (options.png) {
-        write_png(*options.png, rendering.image, options.exposure);
+        write_png(*options.png, rendering.image, display, options.png_depth);
         say_wrote(*options.png);
+        warn_of_clipping(*options.png, rendering.image, display);
     }
     if (options.stats) {
-        write_file(*options.stats, stats_json(options, scene, rendering));
+        write_file(*options.stats, stats_json(options, scene, rendering, display));
         say_wrote(*options.stats);
     }
 }
