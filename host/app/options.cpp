@@ -295,7 +295,7 @@ void finish(const CLI::App& app, const Words& words, RaceOptions& options) {
 void declare(CLI::App& app, ReferenceOptions& options) {
     ReferenceSettings& settings = options.settings;
     add_scene(app, options.scene);
-    app.add_option("-o", options.output, "The picture: linear EXR of R G B, StdErr and Trust")
+    app.add_option("-o", options.output, "The picture: linear EXR of R G B, StdErr, StdErr.8, ... and Trust")
         ->type_name("REF.exr")
         ->required();
     app.add_flag("--half", options.half, "16-bit floats: a small file");
