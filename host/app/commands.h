@@ -2,6 +2,7 @@
 // The commands of the program. Each throws Error where it cannot do what was asked.
 
 #include "app/options.h"
+#include "core/error.h"
 
 namespace vkcppm {
 
@@ -18,8 +19,12 @@ void execute(const RaceOptions& options);
 /// SIGINT or SIGTERM it ends as soon as an error can be told.
 void execute(const ReferenceOptions& options);
 
-/// Prints the measures of core/metrics.h.
+/// Prints the measures of study/measures.h.
 void execute(const CompareOptions& options);
+
+/// Says in a line whether the image is still what the reference is, writes what was asked for, and gives ok or differs;
+/// or puts the image in the place of the reference.
+ExitCode execute(const CheckOptions& options);
 
 /// Prints what is in the scene and how each material will be treated.
 void execute(const InfoOptions& options);

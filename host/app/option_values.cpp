@@ -5,6 +5,7 @@
 #include <limits>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -53,11 +54,32 @@ std::string parse_name(const std::string& option, const std::string& text) {
     return text;
 }
 
-double parse_exposure(const std::string& option, const std::string& text) {
+std::optional<double> parse_exposure(const std::string& option, const std::string& text) {
+    if (text == "auto") return std::nullopt;
     constexpr double most = 128.0;  // stops: any float becomes white or black
     const double stops = parse_real(option, text);
-    if (std::abs(stops) > most) refuse(option, text, fmt::format("a number from {} to {}", -most, most));
+    if (std::abs(stops) > most) refuse(option, text, fmt::format("auto or a number from {} to {}", -most, most));
     return stops;
+}
+
+ToneMap parse_tone_map(const std::string& option, const std::string& text) {
+    for (const ToneMap tone_map : {ToneMap::none, ToneMap::reinhard, ToneMap::aces, ToneMap::agx}) {
+        if (text == name_of(tone_map)) return tone_map;
+    }
+    refuse(option, text, "none, reinhard, aces or agx");
+}
+
+PngDepth parse_png_depth(const std::string& option, const std::string& text) {
+    if (text != "8" && text != "16") refuse(option, text, "8 or 16");
+    return text == "8" ? PngDepth::eight : PngDepth::sixteen;
+}
+
+double parse_share(const std::string& option, const std::string& text) {
+    std::string_view rest = text;
+    double number = 0.0;
+    if (!take_number(rest, number) || !std::isfinite(number) || number < 0.0 || (!rest.empty() && rest != "%"))
+        refuse(option, text, "a number from 0 up, such as 0.001 or 0.1%");
+    return rest.empty() ? number : number / 100.0;
 }
 
 Extent parse_size(const std::string& option, const std::string& text) {
@@ -91,14 +113,34 @@ double parse_seconds(const std::string& option, const std::string& text) {
     refuse(option, text, "a time greater than 0, such as 90, 90s, 2m, 1.5h or 500ms");
 }
 
-StopAt parse_stop_at(const std::string& option, const std::string& text) {
+namespace {
+
+/// NAME=VALUE with a finite value.
+std::pair<std::string, double> parse_assignment(const std::string& option, const std::string& text,
+                                                const std::string& example) {
     const std::size_t equals = text.find('=');
-    if (equals == std::string::npos) refuse(option, text, "METRIC=VALUE, such as relmse_trimmed=0.0035");
-    StopAt result{&find_metric(option, text.substr(0, equals))};
+    if (equals == std::string::npos) refuse(option, text, fmt::format("METRIC=VALUE, such as {}", example));
     std::string_view rest = std::string_view(text).substr(equals + 1);
-    if (!take_number(rest, result.value) || !rest.empty() || !std::isfinite(result.value) || !(result.value > 0.0))
-        refuse(option, text, "a metric and a finite number greater than 0");
+    double value = 0.0;
+    if (!take_number(rest, value) || !rest.empty() || !std::isfinite(value)) value = -1.0;
+    return {text.substr(0, equals), value};
+}
+
+}  // namespace
+
+StopAt parse_stop_at(const std::string& option, const std::string& text) {
+    const auto [name, value] = parse_assignment(option, text, "relmse_trimmed=0.0035");
+    const StopAt result{&find_metric(option, name), value};
+    if (!(value > 0.0)) refuse(option, text, "a metric and a finite number greater than 0");
     return result;
+}
+
+Bound parse_bound(const std::string& option, const std::string& text) {
+    const auto [name, value] = parse_assignment(option, text, "flip=0.05");
+    if (!is_measure(name))
+        throw Error(ExitCode::usage, fmt::format("{}: '{}' is no metric: there are {}", option, name, measure_names()));
+    if (!(value >= 0.0)) refuse(option, text, "a metric and a finite number of 0 or more");
+    return {name, value};
 }
 
 }  // namespace vkcppm

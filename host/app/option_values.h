@@ -2,10 +2,14 @@
 // Values of the command line's options: read from a word, or refused with the option, the word and what it takes.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
+#include "core/display.h"
 #include "core/image.h"
 #include "core/metrics.h"
+#include "io/png.h"
+#include "study/check.h"
 
 namespace vkcppm {
 
@@ -24,10 +28,14 @@ struct StopAt {
 // Each throws like refuse() where the word is none.
 std::uint32_t parse_whole(const std::string& option, const std::string& text);
 double parse_real(const std::string& option, const std::string& text);
-double parse_factor(const std::string& option, const std::string& text);         // 0 or more, within floats
-std::string parse_name(const std::string& option, const std::string& text);      // not empty
-double parse_exposure(const std::string& option, const std::string& text);       // stops
-Extent parse_size(const std::string& option, const std::string& text);           // 512x384
+double parse_factor(const std::string& option, const std::string& text);                   // 0 or more, within floats
+std::string parse_name(const std::string& option, const std::string& text);                // not empty
+std::optional<double> parse_exposure(const std::string& option, const std::string& text);  // stops; auto: absent
+ToneMap parse_tone_map(const std::string& option, const std::string& text);                // none, reinhard, aces, agx
+PngDepth parse_png_depth(const std::string& option, const std::string& text);              // 8 or 16
+double parse_share(const std::string& option, const std::string& text);                    // 0.001 or 0.1 %; >= 0
+Bound parse_bound(const std::string& option, const std::string& text);                     // flip=0.05
+Extent parse_size(const std::string& option, const std::string& text);                     // 512x384
 double parse_seconds(const std::string& option, const std::string& text);        // of 90, 90s, 2m, 1.5h or 500ms; > 0
 StopAt parse_stop_at(const std::string& option, const std::string& text);        // relmse_trimmed=0.0035
 ThinGlass parse_thin_glass(const std::string& option, const std::string& text);  // thin or solid

@@ -1,6 +1,7 @@
 #include "app/options.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <initializer_list>
 #include <sstream>
@@ -140,6 +141,17 @@ void add_scene(CLI::App& app, SceneOptions& scene) {
     app.add_flag("--strict", scene.strict, "Warnings about the scene end the program, with exit code 65");
 }
 
+/// How `what` is shown.
+std::array<CLI::Option*, 2> add_display(CLI::App& app, DisplayOptions& display, const std::string& what) {
+    CLI::Option* exposure =
+        add(app, "--exposure", "EV|auto", display.exposure, parse_exposure,
+            fmt::format("Stops by which {} {} brightened; auto: the median luminance becomes middle grey (default: 0)",
+                        what, what.ends_with('s') ? "are" : "is"));
+    CLI::Option* tone_map = add(app, "--tone-map", "none|reinhard|aces|agx", display.tone_map, parse_tone_map,
+                                "The curve that brings what is brighter than white below it (default: none)");
+    return {exposure, tone_map};
+}
+
 void add_device(CLI::App& app, Device::Options& device) {
     add(app, "--device", "NAME|INDEX|uuid:...", device.select, parse_name,
         "Vulkan device; vkcppm devices lists them (default: the fastest)");
@@ -197,8 +209,9 @@ void declare(CLI::App& app, RenderOptions& options) {
     add_scene(app, options.scene);
     app.add_option("-o", options.output, "The picture, linear float EXR (default: the scene's name with .exr, here)")
         ->type_name("OUT.exr");
-    app.add_option("--png", options.png, "The picture for the eye, 8-bit sRGB as well")->type_name("FILE.png");
-    add(app, "--exposure", "EV", options.exposure, parse_exposure, "Stops by which the PNG is brightened (default: 0)")
+    app.add_option("--png", options.png, "The picture for the eye, sRGB, as well")->type_name("FILE.png");
+    for (CLI::Option* option : add_display(app, options.display, "the PNG")) option->needs("--png");
+    add(app, "--png-depth", "8|16", options.png_depth, parse_png_depth, "Bits of a number of the PNG (default: 8)")
         ->needs("--png");
     add_settings(app, options.settings, {Kind::method, Kind::bound});
     app.add_option("--reference", options.reference,
@@ -272,8 +285,7 @@ void declare(CLI::App& app, RaceOptions& options) {
     add(app, "--make-reference", "TIME", options.make_reference, parse_seconds,
         "Make it first, in this time, as vkcppm reference does, with a seed that does not race: DIR/reference.exr")
         ->excludes("--reference");
-    add(app, "--exposure", "EV", options.exposure, parse_exposure,
-        "Stops by which pictures are brightened (default: 0)");
+    add_display(app, options.display, "pictures");
     add_settings(app, settings, {Kind::picture, Kind::view});
     add_settings(app, settings, {Kind::parameter});
     add_device(app, options.device);
@@ -300,7 +312,7 @@ void finish(const CLI::App& app, const Words& words, RaceOptions& options) {
 void declare(CLI::App& app, ReferenceOptions& options) {
     ReferenceSettings& settings = options.settings;
     add_scene(app, options.scene);
-    app.add_option("-o", options.output, "The picture: linear EXR of R G B, StdErr and Trust")
+    app.add_option("-o", options.output, "The picture: linear EXR of R G B, StdErr, StdErr.8, ... and Trust")
         ->type_name("REF.exr")
         ->required();
     app.add_flag("--half", options.half, "16-bit floats: a small file");
@@ -330,6 +342,50 @@ void declare(CLI::App& app, CompareOptions& options) {
     app.add_option("IMAGE", options.image, "EXR file")->required()->type_name("");
     app.add_option("REFERENCE", options.reference, "EXR file of the same size")->required()->type_name("");
     app.add_flag("--json", options.json, "Print JSON");
+}
+
+void declare(CLI::App& app, CheckOptions& options) {
+    app.footer(
+        "Without --max and --max-pixels both pictures need a channel StdErr, as vkcppm reference writes it.\n"
+        "Exit codes:\n"
+        "  0 passes   1 differs   2 usage   65 bad picture   66 no such file   73 cannot write");
+    CheckSettings& settings = options.settings;
+    app.add_option("IMAGE", options.image, "EXR file")->required()->type_name("");
+    app.add_option("REFERENCE", options.reference, "EXR file of the same size")->required()->type_name("");
+    app.add_option_function<Words>(
+           "--max",
+           [&options](const Words& words) {
+               for (const std::string& word : words) options.settings.bounds.push_back(parse_bound("--max", word));
+           },
+           "The most that a measure may be, such as flip=0.05; may be given again, all must hold. One of\n" +
+               measure_names())
+        ->type_name("METRIC=VALUE")
+        ->allow_extra_args(false);
+    add(app, "--max-pixels", "SHARE", settings.max_pixels, parse_share,
+        "The most pixels that may differ, such as 0.1%");
+    add(app, "--pixel-bound", "SHARE", settings.pixel_bound, parse_share,
+        fmt::format("By how much one differs: the square root of its relMSE is above this (default: {:g}%)",
+                    100.0 * settings.pixel_bound))
+        ->needs("--max-pixels");
+    add(app, "--level", "SHARE", settings.level, parse_share,
+        fmt::format("How often two right pictures fail by chance where noise is to explain their difference, all\n"
+                    "pixels and blocks together (default: {:g}%)",
+                    100.0 * usual_level));
+    app.add_flag("--update", options.update, "Replace the reference by the image instead, whatever they are");
+    app.add_option("--junit", options.junit, "The verdict for a CI server")->type_name("FILE.xml");
+    app.add_option("--report", options.report,
+                   "Folder for a page of both pictures and where they differ, index.html; made where there is none")
+        ->type_name("DIR");
+    for (CLI::Option* option : add_display(app, options.display, "pictures of the page")) option->needs("--report");
+    app.add_flag("--json", options.json, "Print JSON");
+}
+
+void finish(const CLI::App&, const Words&, CheckOptions& options) {
+    const CheckSettings& settings = options.settings;
+    if (settings.level && !(*settings.level > 0.0 && *settings.level < 1.0))
+        throw Error(ExitCode::usage, fmt::format("--level {:g} is not between 0 and 1", *settings.level));
+    if (settings.max_pixels && *settings.max_pixels > 1.0)
+        throw Error(ExitCode::usage, fmt::format("--max-pixels {:g} is above 1, all pixels", *settings.max_pixels));
 }
 
 void declare(CLI::App& app, InfoOptions& options) {
@@ -405,8 +461,8 @@ constexpr std::array commands{
     command<RenderOptions>(
         "",
         "Renders a glTF scene by progressive photon mapping on a Vulkan device.\n"
-        "Other commands: vkcppm race, vkcppm reference, vkcppm compare, vkcppm info, vkcppm devices, vkcppm doctor;\n"
-        "each has its own --help.\n"
+        "Other commands: vkcppm race, vkcppm reference, vkcppm compare, vkcppm check, vkcppm info,\n"
+        "vkcppm devices, vkcppm doctor; each has its own --help.\n"
         "A scene of such a name is given as ./compare."),
     command<RaceOptions>(
         "race",
@@ -417,6 +473,9 @@ constexpr std::array commands{
         "Makes a picture to measure others against, with its standard error a pixel: paths where they converge,\n"
         "photons for caustics. A scene of the name of a command is given as ./compare."),
     command<CompareOptions>("compare", "Compares a picture with its reference."),
+    command<CheckOptions>(
+        "check",
+        "Says whether a picture is still what its reference is, for CI: by bounds, or by what noise explains."),
     command<InfoOptions>("info", "Lists what is in a scene and how it will be treated."),
     command<DevicesOptions>("devices", "Lists the Vulkan devices."),
     command<DoctorOptions>("doctor", "Tells what a render hangs on and, where something is amiss, how to mend it."),

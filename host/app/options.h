@@ -8,7 +8,10 @@
 #include <vector>
 
 #include "app/option_values.h"
+#include "core/display.h"
+#include "io/png.h"
 #include "render/settings.h"
+#include "study/check.h"
 #include "study/race.h"
 #include "study/reference.h"
 #include "vk/device.h"
@@ -29,13 +32,20 @@ struct SceneOptions {
     bool strict = false;  // warnings of the scene are errors
 };
 
+/// How pictures for the eye are made.
+struct DisplayOptions {
+    ToneMap tone_map = ToneMap::none;
+    std::optional<double> exposure = 0.0;  // stops; absent: by the median luminance
+};
+
 /// vkcppm SCENE ...
 struct RenderOptions {
     SceneOptions scene;
     Settings settings;             // ranges unchecked: resolve_settings does that
     std::filesystem::path output;  // EXR
     std::optional<std::filesystem::path> png;
-    double exposure = 0.0;                            // stops, for the PNG
+    DisplayOptions display;  // for the PNG
+    PngDepth png_depth = PngDepth::eight;
     std::optional<std::filesystem::path> stats;       // JSON
     std::optional<std::filesystem::path> reference;   // EXR that the render is measured against
     std::optional<StopAt> stop_at;                    // only with a reference
@@ -67,6 +77,18 @@ struct CompareOptions {
     bool json = false;
 };
 
+/// vkcppm check IMAGE REFERENCE
+struct CheckOptions {
+    std::filesystem::path image;
+    std::filesystem::path reference;
+    CheckSettings settings;                       // level: where it was asked for
+    bool update = false;                          // the reference becomes the image
+    std::optional<std::filesystem::path> junit;   // XML
+    std::optional<std::filesystem::path> report;  // folder of the page
+    DisplayOptions display;                       // for the pictures of the page
+    bool json = false;
+};
+
 /// vkcppm race SCENE
 struct RaceOptions {
     SceneOptions scene;
@@ -74,7 +96,7 @@ struct RaceOptions {
     std::optional<std::filesystem::path> reference;  // EXR; by default references/NAME.exr beside the scene
     std::optional<double> make_reference;            // s: one is made for the race, in at most that time
     std::filesystem::path folder;                    // of all that is written
-    double exposure = 0.0;                           // stops, for the pictures
+    DisplayOptions display;                          // for the pictures
     Device::Options device;
     bool quiet = false;
     std::string command;  // this command line, to be given to a shell again
@@ -104,16 +126,19 @@ struct TextOptions {
     std::string text;
 };
 
-using Options = std::variant<RenderOptions, RaceOptions, ReferenceOptions, CompareOptions, InfoOptions, DevicesOptions,
-                             DoctorOptions, TextOptions>;
+using Options = std::variant<RenderOptions, RaceOptions, ReferenceOptions, CompareOptions, CheckOptions, InfoOptions,
+                             DevicesOptions, DoctorOptions, TextOptions>;
+
+/// CheckSettings::level of a check without bounds where none is given.
+inline constexpr double usual_level = 0.01;
 
 /// Iterations where --time is given and --iterations is not.
 inline constexpr std::uint32_t unbounded_iterations = max_iterations;
 inline constexpr std::uint32_t unbounded_samples = 1u << 24;  // of ReferenceSettings, likewise
 
 /// Reads the command line; argv[0] is the program. The first word chooses the command where it is race, reference,
-/// compare, info, devices or doctor, and is the scene otherwise. Throws Error(usage) with the option, its value and
-/// what it takes.
+/// compare, check, info, devices or doctor, and is the scene otherwise. Throws Error(usage) with the option, its value
+/// and what it takes.
 Options parse_options(int argc, const char* const* argv);
 
 /// What --help says of an option, in parts.

@@ -129,7 +129,8 @@ Json report_json(const Report& report) {
     return json;
 }
 
-std::string stats_json(const RenderOptions& options, const Scene& scene, const Rendering& rendering) {
+std::string stats_json(const RenderOptions& options, const Scene& scene, const Rendering& rendering,
+                       const Display& display) {
     Json json;
     json["version"] = version();
     json["scene"] = scene_json(options.scene, scene);
@@ -144,6 +145,12 @@ std::string stats_json(const RenderOptions& options, const Scene& scene, const R
                                {"reached", reached(*options.stop_at, rendering)}};
         }
         json["curve"] = curve_json(rendering.curve);
+    }
+    if (options.png) {
+        json["png"] = {{"file", options.png->string()},
+                       {"tone_map", name_of(display.tone_map)},
+                       {"exposure", display.exposure},
+                       {"clipped", clipped_share(rendering.image, display)}};
     }
     return json_text(json, 2) + "\n";
 }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/options.h"
+#include "core/display.h"
 #include "io/exr.h"
 #include "render/render.h"
 #include "render/settings_rows.h"
@@ -48,8 +49,9 @@ std::string version();
 ExrAttributes exr_attributes(const SceneOptions& options, const Scene& scene, const Rendering& rendering);
 
 /// The text of --stats: a JSON object with version, scene, settings and the report; with a reference also its file,
-/// what the render was to stop at, and the curve.
-std::string stats_json(const RenderOptions& options, const Scene& scene, const Rendering& rendering);
+/// what the render was to stop at, and the curve, and with a PNG how it shows the picture.
+std::string stats_json(const RenderOptions& options, const Scene& scene, const Rendering& rendering,
+                       const Display& display);
 
 /// True where the last point of the curve is at or below the error to stop at. Asserts that the render was measured.
 bool reached(const StopAt& stop_at, const Rendering& rendering);

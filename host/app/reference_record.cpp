@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/record.h"
+#include "study/blocks.h"
 
 namespace vkcppm {
 namespace {
@@ -24,6 +25,7 @@ Json reference_settings_json(const ReferenceSettings& settings) {
 Json error_json(const Reference& reference) {
     return {{"samples_done", reference.samples},
             {"iterations_done", reference.iterations},
+            {"batches", reference.batches},
             {"mse", reference.mse},
             {"srgb_mse", reference.srgb_mse},
             {"relmse", reference.relmse},
@@ -42,6 +44,9 @@ float rounded_error(float error) {
     return std::ldexp(std::round(8.0f * fraction) / 8.0f, exponent);
 }
 
+/// Root mean square over the channels, rounded.
+float told_error(const glm::vec3& error) { return rounded_error(std::sqrt(glm::dot(error, error) / 3.0f)); }
+
 }  // namespace
 
 ExrAttributes reference_attributes(const ReferenceOptions& options, const Scene& scene, const Reference& reference) {
@@ -52,8 +57,12 @@ ExrAttributes reference_attributes(const ReferenceOptions& options, const Scene&
 
 ExrChannels reference_channels(const Reference& reference) {
     ExrChannels channels = to_channels(reference.mean);
-    for (const glm::vec3& error : reference.standard_error.rgb) {
-        channels.values["StdErr"].push_back(rounded_error(std::sqrt(glm::dot(error, error) / 3.0f)));
+    for (const glm::vec3& error : reference.standard_error.rgb) channels.values["StdErr"].push_back(told_error(error));
+    for (const BlockErrors& blocks : reference.block_errors) {
+        std::vector<float>& values = channels.values[fmt::format("StdErr.{}", blocks.side)];
+        for (std::size_t i = 0; i < channels.extent.pixels(); ++i) {
+            values.push_back(told_error(blocks.standard_error[block_at(channels.extent, blocks.side, i)]));
+        }
     }
     channels.values["Trust"] = reference.trusted;
     return channels;

@@ -13,7 +13,8 @@ namespace vkcppm {
 /// The EXR's attributes, named "vkcppm.*": what makes it again, and its expected error.
 ExrAttributes reference_attributes(const ReferenceOptions& options, const Scene& scene, const Reference& reference);
 
-/// R, G, B, their standard errors StdErr.R, StdErr.G, StdErr.B, and Trust, 1 or 0.
+/// R, G, B, their standard error StdErr, root mean square over channels, the same of means over blocks of 8, 64, ...
+/// pixels, StdErr.8, StdErr.64, ..., at all pixels of a block, and Trust, 1 or 0.
 ExrChannels reference_channels(const Reference& reference);
 
 /// A JSON object: settings, error, and where there is room for them (`stats`) times of the passes.

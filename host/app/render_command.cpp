@@ -11,6 +11,7 @@
 #include "app/checkpoint_file.h"
 #include "app/commands.h"
 #include "app/console.h"
+#include "app/display.h"
 #include "app/interrupt.h"
 #include "app/load.h"
 #include "app/outputs.h"
@@ -132,16 +133,6 @@ Rendering render_with_progress(const Scene& scene, const RenderOptions& options,
     return rendering;
 }
 
-/// A PNG that is mostly white says nothing, and the exposure that it needs is hard to guess.
-void warn_of_clipping(const fs::path& png, double exposure, Rendering& rendering) {
-    const Clipping clipping = clipping_of(rendering.image, exposure);
-    if (clipping.share <= 0.5) return;
-    rendering.warnings.push_back(
-        fmt::format("{}: {:.0f} % of its pixels are brighter than white; --exposure {:.1f} shows "
-                    "most of them",
-                    png.string(), 100.0 * clipping.share, clipping.exposure));
-}
-
 void write_outputs(const RenderOptions& options, const Scene& scene, const Rendering& rendering) {
     const auto say_wrote = [&](const fs::path& file) {
         if (!options.quiet) print_message("wrote " + file.string());
@@ -155,12 +146,15 @@ void write_outputs(const RenderOptions& options, const Scene& scene, const Rende
     } else {
         say_wrote(options.output);
     }
+    const Display display =
+        options.png ? display_of(options.display, rendering.image, options.png->string(), options.quiet) : Display();
     if (options.png) {
-        write_png(*options.png, rendering.image, options.exposure);
+        write_png(*options.png, rendering.image, display, options.png_depth);
         say_wrote(*options.png);
+        warn_of_clipping(*options.png, rendering.image, display);
     }
     if (options.stats) {
-        write_file(*options.stats, stats_json(options, scene, rendering));
+        write_file(*options.stats, stats_json(options, scene, rendering, display));
         say_wrote(*options.stats);
     }
 }
@@ -210,7 +204,6 @@ void execute(const RenderOptions& options) {
     }
     Rendering rendering =
         render_with_progress(scene, options, measuring ? &*measuring : nullptr, checkpointing, device);
-    if (options.png) warn_of_clipping(*options.png, options.exposure, rendering);
     print_warnings(rendering.warnings);
     if (options.hash) {
         print_result(fmt::format("picture {}\n", hash_text(hash_of(rendering.image))));

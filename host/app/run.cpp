@@ -4,6 +4,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <type_traits>
 #include <variant>
 
 #include <fcntl.h>
@@ -39,8 +40,15 @@ int run(int argc, const char* const* argv) {
     std::signal(SIGPIPE, SIG_IGN);  // a write into a closed pipe or past the file size limit is an error to report,
     std::signal(SIGXFSZ, SIG_IGN);  // not an end without a word
     try {
-        std::visit([](const auto& options) { execute(options); }, parse_options(argc, argv));
-        return int(ExitCode::ok);
+        const auto carry_out = [](const auto& options) {
+            if constexpr (std::is_void_v<decltype(execute(options))>) {
+                execute(options);
+                return ExitCode::ok;
+            } else {
+                return execute(options);
+            }
+        };
+        return int(std::visit(carry_out, parse_options(argc, argv)));
     } catch (const Error& error) {
         return fail(error.code(), error.what());
     } catch (const std::bad_alloc&) {

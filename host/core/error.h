@@ -9,6 +9,7 @@ namespace vkcppm {
 /// Exit codes of the program (sysexits.h numbers where one fits).
 enum class ExitCode : int {
     ok = 0,
+    differs = 1,
     usage = 2,
     bad_scene = 65,
     no_input = 66,

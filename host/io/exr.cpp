@@ -70,6 +70,43 @@ std::array<std::string, 3> rgb_channels(const Imf::ChannelList& channels, const 
     return {"Y", "Y", "Y"};
 }
 
+Extent extent_of(const Imath::Box2i& window) { return {std::uint32_t(width(window)), std::uint32_t(height(window))}; }
+
+/// The pixels of the data window within the display window; zeros where there are none.
+template <typename Pixel>
+std::vector<Pixel> in_window(const std::vector<Pixel>& pixels, const Imath::Box2i& data, const Imath::Box2i& display) {
+    std::vector<Pixel> shown(extent_of(display).pixels(), Pixel(0.0f));
+    const int left = std::max(data.min.x, display.min.x);
+    const int right = std::min(data.max.x, display.max.x);
+    for (int y = std::max(data.min.y, display.min.y); y <= std::min(data.max.y, display.max.y) && left <= right; ++y) {
+        const auto from = pixels.begin() + (y - data.min.y) * width(data) + (left - data.min.x);
+        std::copy(from, from + (right - left + 1),
+                  shown.begin() + (y - display.min.y) * width(display) + (left - display.min.x));
+    }
+    return shown;
+}
+
+ExrChannels read_channels(const fs::path& file, std::string_view prefix) {
+    Imf::InputFile input(file.c_str(), no_worker_threads);
+    const Imath::Box2i data = input.header().dataWindow();
+    const Imath::Box2i display = input.header().displayWindow();
+    ExrChannels channels{extent_of(display), {}};
+    Imf::FrameBuffer frame;
+    const Imf::ChannelList& list = input.header().channels();
+    for (auto it = list.begin(); it != list.end(); ++it) {
+        if (!std::string_view(it.name()).starts_with(prefix)) continue;
+        std::vector<float>& values = channels.values[it.name()];
+        values.resize(std::size_t(width(data) * height(data)));
+        frame.insert(it.name(), Imf::Slice::Make(Imf::FLOAT, values.data(), data, sizeof(float),
+                                                 sizeof(float) * std::size_t(width(data))));
+    }
+    if (channels.values.empty()) return channels;
+    input.setFrameBuffer(frame);
+    input.readPixels(data.min.y, data.max.y);
+    for (auto& [name, values] : channels.values) values = in_window(values, data, display);
+    return channels;
+}
+
 Image read_rgb(const fs::path& file) {
     Imf::InputFile input(file.c_str(), no_worker_threads);
     const Imath::Box2i data = input.header().dataWindow();
@@ -89,17 +126,32 @@ Image read_rgb(const fs::path& file) {
         for (glm::vec3& pixel : pixels) pixel = glm::vec3(pixel.r);
     }
 
-    Image image;
-    image.extent = {std::uint32_t(width(display)), std::uint32_t(height(display))};
-    image.rgb.assign(image.extent.pixels(), glm::vec3(0.0f));
-    const int left = std::max(data.min.x, display.min.x);
-    const int right = std::min(data.max.x, display.max.x);
-    for (int y = std::max(data.min.y, display.min.y); y <= std::min(data.max.y, display.max.y) && left <= right; ++y) {
-        const auto from = pixels.begin() + (y - data.min.y) * width(data) + (left - data.min.x);
-        std::copy(from, from + (right - left + 1),
-                  image.rgb.begin() + (y - display.min.y) * width(display) + (left - display.min.x));
-    }
+    Image image{extent_of(display), in_window(pixels, data, display)};
     return image;
+}
+
+ExrAttributes read_attributes(const fs::path& file) {
+    ExrAttributes attributes;
+    Imf::InputFile input(file.c_str(), no_worker_threads);
+    for (auto it = input.header().begin(); it != input.header().end(); ++it) {
+        if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute())) {
+            attributes.emplace_back(it.name(), text->value());
+        }
+    }
+    return attributes;
+}
+
+/// What `read` gives of a file whose header holds; what OpenEXR throws as an Error.
+auto checked(const fs::path& file, std::uint64_t most_pixels, const auto& read) {
+    require_file(file);
+    check_exr_header(file, most_pixels);
+    try {
+        return read();
+    } catch (const Error&) {
+        throw;
+    } catch (const std::exception& error) {
+        fail_to_read(file, error.what());
+    }
 }
 
 }  // namespace
@@ -150,32 +202,15 @@ void write_exr(const fs::path& file, const Image& image, const ExrAttributes& at
 }
 
 Image read_exr(const fs::path& file, std::uint64_t most_pixels) {
-    require_file(file);
-    check_exr_header(file, most_pixels);
-    try {
-        return read_rgb(file);
-    } catch (const Error&) {
-        throw;
-    } catch (const std::exception& error) {
-        fail_to_read(file, error.what());
-    }
+    return checked(file, most_pixels, [&] { return read_rgb(file); });
+}
+
+ExrChannels read_exr_channels(const fs::path& file, std::string_view prefix) {
+    return checked(file, most_exr_pixels, [&] { return read_channels(file, prefix); });
 }
 
 ExrAttributes read_exr_attributes(const fs::path& file) {
-    require_file(file);
-    check_exr_header(file, most_exr_pixels);
-    try {
-        ExrAttributes attributes;
-        Imf::InputFile input(file.c_str(), no_worker_threads);
-        for (auto it = input.header().begin(); it != input.header().end(); ++it) {
-            if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute())) {
-                attributes.emplace_back(it.name(), text->value());
-            }
-        }
-        return attributes;
-    } catch (const std::exception& error) {
-        fail_to_read(file, error.what());
-    }
+    return checked(file, most_exr_pixels, [&] { return read_attributes(file); });
 }
 
 }  // namespace vkcppm

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -41,6 +42,10 @@ inline constexpr std::uint64_t most_exr_pixels = std::uint64_t(1) << 27;
 /// not cover is black. Throws Error: no_input where the file is missing, bad_scene where it is not such a picture or
 /// has more than `most_pixels` pixels.
 Image read_exr(const std::filesystem::path& file, std::uint64_t most_pixels = most_exr_pixels);
+
+/// The channels whose names begin with `prefix`, windows as in read_exr; none where there are none. Throws like
+/// read_exr.
+ExrChannels read_exr_channels(const std::filesystem::path& file, std::string_view prefix);
 
 /// The text attributes of a file, sorted by name. Throws like read_exr.
 ExrAttributes read_exr_attributes(const std::filesystem::path& file);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstddef>
+#include <csetjmp>
 #include <vector>
 
 #include <png.h>
@@ -14,27 +14,14 @@
 
 namespace vkcppm {
 
-Bitmap to_bitmap(const Image& image, double exposure) {
-    const double scale = std::exp2(exposure);
+Bitmap to_bitmap(const Image& image, const Display& display) {
     Bitmap bitmap{image.extent, {}};
     bitmap.rgb.reserve(image.rgb.size());
     for (const glm::vec3& pixel : image.rgb) {
-        glm::u8vec3 encoded;
-        for (int c = 0; c < 3; ++c) encoded[c] = srgb_byte(scale * double(pixel[c]));
-        bitmap.rgb.push_back(encoded);
+        const glm::dvec3 linear = shown(pixel, display);
+        bitmap.rgb.emplace_back(srgb_byte(linear.r), srgb_byte(linear.g), srgb_byte(linear.b));
     }
     return bitmap;
-}
-
-Clipping clipping_of(const Image& image, double exposure) {
-    std::vector<float> largest;
-    for (const glm::vec3& pixel : image.rgb) largest.push_back(std::max({0.0f, pixel.r, pixel.g, pixel.b}));
-    if (largest.empty()) return {};
-    const double white = std::exp2(-exposure);
-    const auto clipped = std::ranges::count_if(largest, [&](float x) { return x > white; });
-    const auto rank = largest.begin() + std::ptrdiff_t(0.95 * double(largest.size() - 1));
-    std::ranges::nth_element(largest, rank);
-    return {double(clipped) / double(largest.size()), *rank > 0.0f ? std::floor(-10.0 * std::log2(*rank)) / 10.0 : 0.0};
 }
 
 std::string encode_png(const Bitmap& bitmap) {
@@ -54,8 +41,57 @@ std::string encode_png(const Bitmap& bitmap) {
     return bytes;
 }
 
-void write_png(const std::filesystem::path& file, const Image& image, double exposure) {
-    write_file(file, encode_png(to_bitmap(image, exposure)));
+namespace {
+
+void append(png_structp writer, png_bytep bytes, std::size_t count) {
+    static_cast<std::string*>(png_get_io_ptr(writer))->append(reinterpret_cast<const char*>(bytes), count);
+}
+
+void flush(png_structp) {}
+
+/// The file of rows of 16-bit sRGB numbers, their first byte the higher. libpng's simplified interface, as above, would
+/// take 16-bit numbers for linear light. False where libpng fails; nothing here has a destructor that its jump could
+/// leave out.
+bool encode_rows(std::string& file, std::vector<png_bytep>& rows, Extent extent) {
+    png_structp writer = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+    png_infop info = writer ? png_create_info_struct(writer) : nullptr;
+    if (!info || setjmp(png_jmpbuf(writer))) {
+        png_destroy_write_struct(&writer, &info);
+        return false;
+    }
+    png_set_write_fn(writer, &file, append, flush);
+    png_set_IHDR(writer, info, extent.width, extent.height, 16, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB_gAMA_and_cHRM(writer, info, PNG_sRGB_INTENT_PERCEPTUAL);
+    png_set_rows(writer, info, rows.data());
+    png_write_png(writer, info, PNG_TRANSFORM_IDENTITY, nullptr);
+    png_destroy_write_struct(&writer, &info);
+    return true;
+}
+
+std::string encode_sixteen(const Image& image, const Display& display) {
+    std::vector<png_byte> bytes;
+    bytes.reserve(6 * image.rgb.size());
+    for (const glm::vec3& pixel : image.rgb) {
+        const glm::dvec3 linear = shown(pixel, display);
+        for (int c = 0; c < 3; ++c) {
+            const auto number = std::lround(65535.0 * srgb_encode(std::clamp(linear[c], 0.0, 1.0)));
+            bytes.push_back(png_byte(number >> 8));
+            bytes.push_back(png_byte(number & 255));
+        }
+    }
+    std::vector<png_bytep> rows;
+    for (std::size_t y = 0; y < image.extent.height; ++y) rows.push_back(bytes.data() + 6 * y * image.extent.width);
+    std::string file;
+    if (!encode_rows(file, rows, image.extent)) throw Error(ExitCode::internal, "cannot encode a PNG picture");
+    return file;
+}
+
+}  // namespace
+
+void write_png(const std::filesystem::path& file, const Image& image, const Display& display, PngDepth depth) {
+    write_file(file,
+               depth == PngDepth::sixteen ? encode_sixteen(image, display) : encode_png(to_bitmap(image, display)));
 }
 
 }  // namespace vkcppm

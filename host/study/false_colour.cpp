@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include <glm/common.hpp>
+
 namespace vkcppm {
 namespace {
 
@@ -49,6 +51,16 @@ double positive_quantile(std::span<const float> values, double part) {
     const auto at = kept.begin() + std::ptrdiff_t(std::lround(part * double(kept.size() - 1)));
     std::nth_element(kept.begin(), at, kept.end());
     return *at;
+}
+
+std::vector<float> absolute_difference(const Image& image, const Image& reference) {
+    assert(image.extent == reference.extent);
+    std::vector<float> differences;
+    for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+        const glm::vec3 difference = abs(image.rgb[i] - reference.rgb[i]);
+        differences.push_back((difference.r + difference.g + difference.b) / 3.0f);
+    }
+    return differences;
 }
 
 Bitmap false_colours(Extent extent, std::span<const float> values, const ColourScale& scale) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
@@ -27,6 +28,9 @@ struct ColourScale {
 
 /// The value that a share of `part` (0..1) of those that are finite and > 0 do not exceed; 0 where there are none.
 double positive_quantile(std::span<const float> values, double part);
+
+/// [pixels] |x - r|, the mean over the channels, W m^-2 sr^-1; pictures of one size.
+std::vector<float> absolute_difference(const Image& image, const Image& reference);
 
 /// values [pixels of extent]; those without a position are gray.
 Bitmap false_colours(Extent extent, std::span<const float> values, const ColourScale& scale);

@@ -16,14 +16,16 @@
 #include "render/path_tracer.h"
 #include "render/render.h"
 #include "study/batch_mean.h"
+#include "study/blocks.h"
+#include "study/significance.h"
 #include "vk/device.h"
 
 namespace vkcppm {
 namespace {
 
 constexpr std::uint32_t iterations_a_batch = 4;
-constexpr std::uint32_t least_batches = 8;  // of each half, before an error is told
-constexpr double least_share = 0.1;         // of the time, for a half that may not know its error yet
+constexpr std::uint32_t least_batches = least_error_batches;  // of each half, before an error is told
+constexpr double least_share = 0.1;                           // of the time, for a half that may not know its error yet
 // The starting radius, in footprints of the pixel (discs of a pixel's area), and its schedule, R^2 ~ N^(schedule - 1):
 // the bias that the kernel leaves, at edges, goes to 0 with R, and variance ~ 1 / (N R^2) with N.
 constexpr double first_radius = 4.0;
@@ -44,25 +46,32 @@ Settings caustic_settings(const Settings& render) {
 /// One half of the light: batches, the light they add up to, and their time.
 class Half {
 public:
-    Half(Extent extent, std::uint32_t bound) : light_(extent), bound_(bound) {}
+    Half(Extent extent, std::uint32_t bound) : extent_(extent), light_(extent), bound_(bound) {
+        for (const std::uint32_t side : block_sides(extent)) blocks_.emplace_back(side, blocks_of(extent, side));
+    }
     virtual ~Half() = default;
 
     void add_batch() {
         const double start = wall_now();
-        add(light_);
+        const std::vector<glm::dvec3> batch = render_batch();
+        light_.add(batch);
+        for (auto& [side, means] : blocks_) means.add(block_means(extent_, side, batch));
         seconds_ += wall_now() - start;
     }
     const BatchMean& light() const { return light_; }
+    const std::vector<std::pair<std::uint32_t, BatchMean>>& blocks() const { return blocks_; }  // by their sides
     std::size_t batches() const { return light_.batches(); }
     bool done() const { return batches() >= bound_; }
     double seconds() const { return seconds_; }
     double seconds_a_batch() const { return seconds_ / double(batches()); }
 
 protected:
-    virtual void add(BatchMean& light) = 0;
+    virtual std::vector<glm::dvec3> render_batch() = 0;  // [pixels]
 
 private:
+    Extent extent_;
     BatchMean light_;
+    std::vector<std::pair<std::uint32_t, BatchMean>> blocks_;
     std::size_t bound_;
     double seconds_ = 0.0;
 };
@@ -76,7 +85,10 @@ public:
     PathTracer tracer;
 
 private:
-    void add(BatchMean& light) override { light.add(tracer.trace()); }
+    std::vector<glm::dvec3> render_batch() override {
+        const Image batch = tracer.trace();
+        return {batch.rgb.begin(), batch.rgb.end()};
+    }
 };
 
 class Caustics : public Half {
@@ -90,7 +102,7 @@ public:
 
 private:
     /// The integrator knows the mean over all its iterations: a batch is what its sum grew by.
-    void add(BatchMean& light) override {
+    std::vector<glm::dvec3> render_batch() override {
         integrator.run(iterations_a_batch);
         const Image mean = integrator.resolve();
         std::vector<glm::dvec3> batch;
@@ -99,7 +111,7 @@ private:
             batch.push_back((sum - sum_[i]) / double(iterations_a_batch));
             sum_[i] = sum;
         }
-        light.add(batch);
+        return batch;
     }
 
     std::vector<glm::dvec3> sum_;
@@ -238,6 +250,17 @@ void fill_statistics(Reference& result, const Paths& paths, const Caustics* caus
         result.trusted.push_back(trusted ? 1.0f : 0.0f);
         result.untrusted += trusted ? 0 : 1;
     }
+    for (std::size_t level = 0; level < paths.blocks().size(); ++level) {
+        BlockErrors& blocks = result.block_errors.emplace_back();
+        blocks.side = paths.blocks()[level].first;
+        for (std::size_t block = 0; block < blocks_of(extent, blocks.side).pixels(); ++block) {
+            glm::dvec3 squared = paths.blocks()[level].second.squared_error(block);
+            if (caustics) squared += caustics->blocks()[level].second.squared_error(block);
+            blocks.standard_error.emplace_back(glm::sqrt(squared));
+        }
+    }
+    result.batches = std::uint32_t(paths.batches());
+    if (caustics) result.batches = std::min(result.batches, std::uint32_t(caustics->batches()));
     result.caustic_share = light > 0.0 ? caustic_light / light : 0.0;
     result.median_error = quantile(errors, 0.5);
     result.error_99 = quantile(errors, 0.99);

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include <glm/vec3.hpp>
+
 #include "core/image.h"
 #include "render/report.h"
 #include "render/settings.h"
@@ -29,9 +31,18 @@ struct ReferenceSettings {
     double trust = 0.05;           // largest relative standard error of a pixel that is trusted, > 0
 };
 
+/// Standard errors of means over blocks (study/blocks.h), from the same batches as those of pixels: neighbouring pixels
+/// share photons, so that theirs do not tell it.
+struct BlockErrors {
+    std::uint32_t side = 0;                 // pixels
+    std::vector<glm::vec3> standard_error;  // [blocks]
+};
+
 struct Reference {
     Image mean;
-    Image standard_error;        // of the mean, a pixel and channel: from independent batches
+    Image standard_error;  // of the mean, a pixel and channel: from independent batches
+    std::vector<BlockErrors> block_errors;
+    std::uint32_t batches = 0;   // of the half that has fewer
     std::vector<float> trusted;  // [P] 1 or 0: the root mean square of the relative standard error, over the pixel and
                                  // its eight neighbours, is at most ReferenceSettings::trust. Relative: se^2 over
                                  // r^2 + 0.01, as relMSE weighs it, the mean over channels.

@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <random>
 #include <set>
 #include <sstream>
 #include <string>
@@ -63,7 +64,7 @@ protected:
 
 TEST_F(Cli, HelpAndVersionGoToStandardOutput) {
     for (const Words& words : {Words{"--help"}, Words{"-h"}, Words{"race", "--help"}, Words{"compare", "--help"},
-                               Words{"info", "--help"}, Words{"devices", "--help"}}) {
+                               Words{"check", "--help"}, Words{"info", "--help"}, Words{"devices", "--help"}}) {
         const auto result = run(words);
         expect_done(result);
         EXPECT_TRUE(contains(result.out, "Usage: vkcppm")) << shown(words) << "\n" << result.out;
@@ -246,6 +247,100 @@ TEST_F(Cli, CompareCountsNonFinitePixels) {
     EXPECT_EQ(Json::parse(result.out).at("image_non_finite"), 1);
     EXPECT_EQ(Json::parse(result.out).at("mse"), 0.0);
     EXPECT_TRUE(contains(result.err, "warning: 1 pixels of the image")) << result.err;
+}
+
+// ---- Check
+
+class CheckCli : public Cli {
+protected:
+    /// A grey picture with noise of standard error 0.01, of another seed each time.
+    void write_noisy(const std::string& name, float grey, std::uint32_t seed, bool errors = true) const {
+        std::mt19937 engine(seed);
+        std::normal_distribution<float> noise(0.0f, 0.01f);
+        Image image{{32, 24}, {}};
+        for (std::size_t i = 0; i < image.extent.pixels(); ++i) image.rgb.emplace_back(grey + noise(engine));
+        ExrChannels channels = to_channels(image);
+        if (errors) {
+            channels.values["StdErr"].assign(image.extent.pixels(), 0.01f);
+            channels.values["StdErr.8"].assign(image.extent.pixels(), 0.01f / 8.0f);
+            channels.values["StdErr.64"].assign(image.extent.pixels(), 0.01f / 27.7f);
+        }
+        write_exr(folder_ / name, channels, {{"vkcppm.batches", "64"}});
+    }
+};
+
+/// Exit code `code`, one line on standard output that begins with `begin` and holds `told`.
+void expect_verdict(const test::ProcessResult& result, int code, const std::string& begin, const Words& told = {}) {
+    EXPECT_EQ(result.signal, 0);
+    EXPECT_EQ(result.exit_code, code) << result.out << result.err;
+    EXPECT_EQ(lines_of(result.out).size(), 1u) << result.out;
+    EXPECT_TRUE(result.out.starts_with(begin)) << result.out;
+    for (const std::string& part : told) EXPECT_TRUE(contains(result.out, part)) << result.out;
+}
+
+TEST_F(CheckCli, NoiseExplainsAnotherSeedAndNotAnotherGrey) {
+    write_noisy("a.exr", 0.5f, 1);
+    write_noisy("r.exr", 0.5f, 2);
+    write_noisy("brighter.exr", 0.51f, 3);
+    expect_verdict(run({"check", "a.exr", "r.exr"}), 0,
+                   "passes: ", {"noise explains all 781 pixels and blocks", "level 1 %"});
+    expect_verdict(run({"check", "brighter.exr", "r.exr"}), 1,
+                   "differs: ", {"more than noise is in the mean of the whole picture", "sigma"});
+    const auto json = run({"check", "brighter.exr", "r.exr", "--json", "--level", "5%"});
+    EXPECT_EQ(json.exit_code, 1);
+    EXPECT_EQ(Json::parse(json.out).at("noise").at("level"), 0.05);
+    EXPECT_EQ(Json::parse(json.out).at("passes"), false);
+}
+
+TEST_F(CheckCli, BoundsDecideWhereTheyAreGiven) {
+    write_noisy("a.exr", 0.5f, 1, false);
+    write_noisy("r.exr", 0.5f, 2, false);
+    expect_verdict(run({"check", "a.exr", "r.exr", "--max", "relmse=0.01", "--max", "flip=0.5"}), 0, "passes: relmse",
+                   {"is within 0.01; flip"});
+    expect_verdict(run({"check", "a.exr", "r.exr", "--max", "relmse=1e-6", "--max", "flip=0.5"}), 1, "differs: relmse",
+                   {"is above 1e-06"});
+    expect_verdict(run({"check", "a.exr", "r.exr", "--max-pixels", "0.1%", "--pixel-bound", "20%"}), 0, "passes: 0 of");
+    expect_failure(run({"check", "a.exr", "r.exr"}), 2, {"a.exr has no channel StdErr", "--max relmse="}, "no bounds");
+    expect_failure(run({"check", "a.exr", "r.exr", "--max", "flip=1", "--level", "1%"}), 2, {"StdErr"}, "a level");
+    expect_failure(run({"check", "a.exr", "missing.exr", "--max", "flip=1"}), 66, {"missing.exr"}, "missing");
+}
+
+TEST_F(CheckCli, LeavesAPageAndXmlAndNeverOverwritesAPicture) {
+    write_noisy("a.exr", 0.5f, 1);
+    write_noisy("r.exr", 0.6f, 2);
+    expect_verdict(run({"check", "a.exr", "r.exr", "--report", "out", "--junit", "junit.xml"}), 1, "differs: ");
+    EXPECT_EQ(test::names_in(folder_ / "out"), (std::set<std::string>{"check.json", "index.html"}));
+    EXPECT_TRUE(test::read_bytes(folder_ / "out/index.html").starts_with("<!DOCTYPE html>"));
+    EXPECT_TRUE(contains(test::read_bytes(folder_ / "junit.xml"), "<failure message="));
+    expect_failure(run({"check", "a.exr", "r.exr", "--junit", "r.exr"}), 2, {"--junit", "r.exr"}, "over the reference");
+}
+
+TEST_F(CheckCli, UpdateReplacesTheReferenceByThePicture) {
+    write_noisy("a.exr", 0.5f, 1);
+    write_noisy("r.exr", 0.6f, 2);
+    const std::string bytes = test::read_bytes(folder_ / "a.exr");
+    expect_verdict(run({"check", "a.exr", "r.exr", "--update"}), 0, "r.exr is now a.exr: relmse 0.");
+    EXPECT_EQ(test::read_bytes(folder_ / "r.exr"), bytes);
+    expect_verdict(run({"check", "a.exr", "new.exr", "--update"}), 0, "new.exr is now a.exr\n");
+    EXPECT_EQ(test::read_bytes(folder_ / "new.exr"), bytes);
+    test::write_bytes(folder_ / "text.exr", "no picture");
+    expect_failure(run({"check", "text.exr", "r.exr", "--update"}), 65, {"text.exr"}, "no picture");
+    EXPECT_EQ(test::read_bytes(folder_ / "r.exr"), bytes) << "what is no picture replaces nothing";
+    expect_failure(run({"check", "a.exr", "./a.exr", "--update"}), 2, {"REFERENCE", "a.exr"}, "itself");
+}
+
+TEST_F(Cli, PngsAreExposedByTheMedianAndSayWhatTheyClip) {
+    const auto result = render({"-o", "a.exr", "--png", "a.png", "--exposure", "auto", "--tone-map", "agx",
+                                "--png-depth", "16", "--stats", "a.json"});
+    expect_done(result);
+    EXPECT_EQ(int(test::read_bytes(folder_ / "a.png").at(24)), 16);
+    const Json stats = Json::parse(test::read_bytes(folder_ / "a.json"));
+    EXPECT_EQ(stats.at("png").at("tone_map"), "agx");
+    EXPECT_TRUE(stats.at("png").at("exposure").is_number());
+    const auto bright = render({"-o", "a.exr", "--png", "a.png", "--exposure", "9"});
+    expect_done(bright);
+    EXPECT_TRUE(contains(bright.err, "warning: a.png: ")) << bright.err;
+    EXPECT_TRUE(contains(bright.err, "are clipped; with --exposure ")) << bright.err;
 }
 
 // ---- Misuse of the render

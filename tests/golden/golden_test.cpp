@@ -6,8 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/metrics.h"
 #include "io/exr.h"
+#include "study/check.h"
 #include "support/device/rig.h"
 #include "support/files/evidence.h"
 #include "support/files/places.h"
@@ -42,8 +42,10 @@ TEST_P(Golden, Picture) {
     rig.integrator.run(settings.iterations);
     const Image image = rig.integrator.resolve();
     const Image golden_picture = read_exr(folder / (name + ".exr"));
-    const Comparison found = compare(image, golden_picture);
-    EXPECT_LE(found.relmse.all, golden["tolerance"].get<double>());
+    CheckSettings bounds;
+    bounds.bounds = {{"relmse", golden["tolerance"].get<double>()}};
+    const Check found = check({image}, {golden_picture}, bounds);
+    EXPECT_TRUE(found.passes()) << found.why();
     if (HasFailure()) leave_pictures(image, golden_picture);
 }
 

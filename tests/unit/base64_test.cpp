@@ -1,4 +1,4 @@
-#include "app/race/base64.h"
+#include "app/page/base64.h"
 
 #include <string>
 

@@ -325,5 +325,28 @@ TEST(Exr, TellsWhereItCannotWrite) {
     EXPECT_NE(std::string(error->what()).find("missing/a.exr"), std::string::npos) << error->what();
 }
 
+TEST(Exr, ChannelsAreFoundByTheBeginningOfTheirNames) {
+    const test::TemporaryFolder folder;
+    ExrChannels channels = to_channels(numbered(5, 4));
+    for (std::size_t i = 0; i < 20; ++i) {
+        channels.values["StdErr"].push_back(float(i));
+        channels.values["StdErr.8"].push_back(float(i) / 4.0f);
+    }
+    write_exr(folder / "a.exr", channels);
+    const ExrChannels read = read_exr_channels(folder / "a.exr", "StdErr");
+    EXPECT_EQ(read.extent, (Extent{5, 4}));
+    ASSERT_EQ(read.values.size(), 2u);
+    EXPECT_EQ(read.values.at("StdErr"), channels.values["StdErr"]);
+    EXPECT_EQ(read.values.at("StdErr.8"), channels.values["StdErr.8"]);
+    EXPECT_TRUE(read_exr_channels(folder / "a.exr", "Z").values.empty());
+    // Of the display window, of which the data window covers a part.
+    write_planes(folder / "b.exr", Box2i(V2i(0, 0), V2i(3, 2)), Box2i(V2i(2, 1), V2i(6, 1)), {{"Z", Imf::HALF, 2.0f}});
+    EXPECT_EQ(read_exr_channels(folder / "b.exr", "Z").values.at("Z"),
+              (std::vector<float>{0, 0, 0, 0, 0, 0, 2, 2, 0, 0, 0, 0}));
+    const auto missing = test::thrown_by([&] { read_exr_channels(folder / "none.exr", "Z"); });
+    ASSERT_TRUE(missing);
+    EXPECT_EQ(missing->code(), ExitCode::no_input);
+}
+
 }  // namespace
 }  // namespace vkcppm

@@ -34,7 +34,9 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"study", {"core", "scene", "vk", "flat", "render", "study"}},
     {"app",
      {"core", "scene", "scene/gltf", "scene/diagnosis", "vk", "io", "flat", "render", "study", "app", "app/race"}},
-    {"app/race", {"core", "scene", "vk", "io", "render", "study", "app", "app/race"}},
+    {"app/page", {"core", "io", "study", "app", "app/page"}},
+    {"app/race", {"core", "scene", "vk", "io", "render", "study", "app", "app/page", "app/race"}},
+    {"app/check", {"core", "io", "study", "app", "app/page", "app/check"}},
     {"", {"app"}},
 };
 

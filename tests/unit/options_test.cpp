@@ -115,7 +115,7 @@ TEST(Options, EveryOptionReachesItsSetting) {
     EXPECT_EQ(options.settings.focus_distance, 2.5);
     EXPECT_EQ(options.output, "o.exr");
     EXPECT_EQ(options.png, "p.png");
-    EXPECT_EQ(options.exposure, -1.5);
+    EXPECT_EQ(options.display.exposure, -1.5);
     EXPECT_EQ(options.settings.estimator, "sppm");
     EXPECT_EQ(options.settings.iterations, 7u);
     EXPECT_EQ(options.settings.seconds, 120.0);
@@ -163,6 +163,22 @@ TEST(Options, TheFirstWordChoosesTheCommand) {
     EXPECT_EQ(compare.image, "a.exr");
     EXPECT_EQ(compare.reference, "b.exr");
     EXPECT_TRUE(compare.json);
+    const auto check = std::get<CheckOptions>(
+        parse({"check", "--max", "flip=0.05", "--max", "relmse=1e-3", "a.exr", "b.exr", "--max-pixels", "0.1%",
+               "--pixel-bound", "0.02", "--level", "5%", "--junit", "j.xml", "--report", "d", "--exposure", "auto"}));
+    EXPECT_EQ(check.image, "a.exr");
+    EXPECT_EQ(check.reference, "b.exr");
+    ASSERT_EQ(check.settings.bounds.size(), 2u);
+    EXPECT_EQ(check.settings.bounds[1].name, "relmse");
+    EXPECT_EQ(check.settings.bounds[1].most, 1e-3);
+    EXPECT_DOUBLE_EQ(check.settings.max_pixels.value_or(0.0), 0.001);
+    EXPECT_EQ(check.settings.pixel_bound, 0.02);
+    EXPECT_DOUBLE_EQ(check.settings.level.value_or(0.0), 0.05);
+    EXPECT_EQ(check.junit, "j.xml");
+    EXPECT_EQ(check.report, "d");
+    EXPECT_FALSE(check.display.exposure);
+    EXPECT_FALSE(check.update || check.json);
+    EXPECT_FALSE(std::get<CheckOptions>(parse({"check", "a", "b"})).settings.level);
     const auto info =
         std::get<InfoOptions>(parse({"info", "--json", "a.glb", "--environment", "b.exr", "--thin-glass", "solid"}));
     EXPECT_EQ(info.scene.file, "a.glb");
@@ -215,27 +231,17 @@ TEST(Options, AReferenceHasItsOwn) {
 
 TEST(Options, HelpNamesEveryOptionAndEstimator) {
     const std::string help = std::get<TextOptions>(parse({"--help"})).text;
-    for (const char* name : {"SCENE",          "-o",
-                             "--estimator",    "--iterations",
-                             "--time",         "--photons",
-                             "--size",         "--camera",
-                             "--seed",         "--max-depth",
-                             "--knn",          "--alpha",
-                             "--k ",           "--beta",
-                             "--significance", "--device",
-                             "--stats",        "--quiet",
-                             "--verbose",      "--png",
-                             "--exposure",     "--rings",
-                             "--sectors",      "--validate",
-                             "--version",      "cppm",
-                             "sppm:",          "sppm-kz",
-                             "race",           "reference",
-                             "compare",        "info",
-                             "devices",        "73",
-                             "--environment",  "--thin-glass",
-                             "--aperture",     "--focus-distance",
-                             "--reference",    "--stop-at",
-                             "smape_trimmed",  "clock"}) {
+    for (const char* name : {"SCENE",         "-o",           "--estimator",    "--iterations",
+                             "--time",        "--photons",    "--size",         "--camera",
+                             "--seed",        "--max-depth",  "--knn",          "--alpha",
+                             "--k ",          "--beta",       "--significance", "--device",
+                             "--stats",       "--quiet",      "--verbose",      "--png",
+                             "--exposure",    "--rings",      "--sectors",      "--validate",
+                             "--version",     "cppm",         "sppm:",          "sppm-kz",
+                             "race",          "reference",    "compare",        "check",
+                             "--tone-map",    "info",         "devices",        "73",
+                             "--environment", "--thin-glass", "--aperture",     "--focus-distance",
+                             "--reference",   "--stop-at",    "smape_trimmed",  "clock"}) {
         EXPECT_NE(help.find(name), std::string::npos) << name << " is not in\n" << help;
     }
     EXPECT_NE(std::get<TextOptions>(parse({"compare", "--help"})).text.find("REFERENCE"), std::string::npos);
@@ -299,7 +305,7 @@ TEST(Options, EntrantsHaveParametersOfTheirOwn) {
     }
     EXPECT_EQ(options.race.seeds, 4u);
     EXPECT_EQ(options.reference, "r.exr");
-    EXPECT_EQ(options.exposure, 2.0);
+    EXPECT_EQ(options.display.exposure, 2.0);
     EXPECT_EQ(options.device.select, "0");
     EXPECT_TRUE(options.quiet);
     EXPECT_FALSE(options.make_reference);
@@ -385,6 +391,11 @@ TEST(Options, RefuseEveryBadLineWithOptionValueAndRange) {
         {{"s", "--size", "4294967296x1"}, {"--size", "'4294967296x1'"}},
         {{"s", "--exposure", "x", "--png", "p"}, {"--exposure", "'x'"}},
         {{"s", "--exposure", "1"}, {"--exposure", "--png"}},
+        {{"s", "--exposure", "129", "--png", "p"}, {"--exposure", "'129'", "auto", "128"}},
+        {{"s", "--tone-map", "aces"}, {"--tone-map", "--png"}},
+        {{"s", "--tone-map", "filmic", "--png", "p"}, {"--tone-map", "'filmic'", "none, reinhard, aces or agx"}},
+        {{"s", "--png-depth", "12", "--png", "p"}, {"--png-depth", "'12'", "8 or 16"}},
+        {{"s", "--png-depth", "16"}, {"--png-depth", "--png"}},
         {{"s", "--stop-at", "relmse=1"}, {"--stop-at", "--reference"}},
         {{"s", "--reference", "r", "--stop-at", "relmse"}, {"--stop-at", "'relmse'", "METRIC=VALUE"}},
         {{"s", "--reference", "r", "--stop-at", "0.1"}, {"--stop-at", "'0.1'", "METRIC=VALUE"}},
@@ -402,6 +413,17 @@ TEST(Options, RefuseEveryBadLineWithOptionValueAndRange) {
         {{"compare", "a"}, {"REFERENCE"}},
         {{"compare", "a", "b", "c"}, {"c"}},
         {{"compare", "a", "b", "--quiet"}, {"--quiet"}},
+        {{"check", "a"}, {"REFERENCE"}},
+        {{"check", "a", "b", "--max", "relmse"}, {"--max", "'relmse'", "METRIC=VALUE", "flip"}},
+        {{"check", "a", "b", "--max", "psnr=30"}, {"--max", "'psnr'", "srgb_mse", "ldr_flip"}},
+        {{"check", "a", "b", "--max", "flip=-1"}, {"--max", "'flip=-1'", "0 or more"}},
+        {{"check", "a", "b", "--max", "flip=nan"}, {"--max", "'flip=nan'", "finite"}},
+        {{"check", "a", "b", "--max-pixels", "many"}, {"--max-pixels", "'many'", "0.1%"}},
+        {{"check", "a", "b", "--max-pixels", "101%"}, {"--max-pixels", "1.01", "above 1"}},
+        {{"check", "a", "b", "--pixel-bound", "5%"}, {"--pixel-bound", "--max-pixels"}},
+        {{"check", "a", "b", "--level", "0"}, {"--level 0", "between 0 and 1"}},
+        {{"check", "a", "b", "--level", "1"}, {"--level 1", "between 0 and 1"}},
+        {{"check", "a", "b", "--exposure", "1"}, {"--exposure", "--report"}},
         {{"info"}, {"SCENE"}},
         {{"devices", "x"}, {"x"}},
     };

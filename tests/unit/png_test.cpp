@@ -45,10 +45,34 @@ TEST(Png, EncodesSrgbWithTheFirstRowOnTop) {
 TEST(Png, ExposureIsInStops) {
     const test::TemporaryFolder folder;
     const Image image{{3, 1}, {glm::vec3(0.125f), glm::vec3(0.5f), glm::vec3(0.0f)}};
-    write_png(folder / "up.png", image, 2.0);
+    write_png(folder / "up.png", image, {ToneMap::none, 2.0});
     EXPECT_EQ(decode(folder / "up.png").rgb, (Bytes{188, 188, 188, 255, 255, 255, 0, 0, 0}));
-    write_png(folder / "down.png", image, -1.0);
+    write_png(folder / "down.png", image, {ToneMap::none, -1.0});
     EXPECT_EQ(decode(folder / "down.png").rgb, (Bytes{71, 71, 71, 137, 137, 137, 0, 0, 0}));  // 0.0625, 0.25
+}
+
+TEST(Png, SixteenBitsAreFiner) {
+    const test::TemporaryFolder folder;
+    const Image image{{2, 1}, {{0.0f, 0.5f, 1.0f}, {0.501f, 2.0f, -1.0f}}};
+    write_png(folder / "a.png", image, {}, PngDepth::sixteen);
+    EXPECT_EQ(decode(folder / "a.png").rgb, (Bytes{0, 188, 255, 188, 255, 0})) << "as 8 bits";
+    const std::string bytes = test::read_bytes(folder / "a.png");
+    EXPECT_EQ(int(bytes.at(24)), 16) << "bit depth of the header";
+    EXPECT_NE(bytes.find("sRGB"), std::string::npos) << "what its numbers are";
+    png_image png{};
+    png.version = PNG_IMAGE_VERSION;
+    ASSERT_TRUE(png_image_begin_read_from_file(&png, (folder / "a.png").c_str()));
+    png.format = PNG_FORMAT_LINEAR_RGB;  // 16 bits
+    std::vector<png_uint_16> linear(6);
+    ASSERT_TRUE(png_image_finish_read(&png, nullptr, linear.data(), 0, nullptr));
+    // libpng takes sRGB for a power of 2.2 here, which moves both alike.
+    EXPECT_NEAR(linear[3] - linear[1], 0.001 * 65535.0, 2.0) << "8 bits are 500 apart";
+}
+
+TEST(Png, ToneMapsBeforeItEncodes) {
+    const test::TemporaryFolder folder;
+    write_png(folder / "a.png", Image{{1, 1}, {glm::vec3(4.0f)}}, {ToneMap::reinhard, -2.0});
+    EXPECT_EQ(decode(folder / "a.png").rgb, (Bytes{188, 188, 188})) << "1 / (1 + 1)";
 }
 
 TEST(Png, NonFinitePixelsAreBlackOrWhite) {
@@ -83,19 +107,6 @@ TEST(Png, TellsWhereItCannotWrite) {
     EXPECT_EQ(error->code(), ExitCode::cannot_write);
     EXPECT_NE(std::string(error->what()).find("missing/a.png"), std::string::npos) << error->what();
     EXPECT_TRUE(test::names_in(folder.path()).empty());
-}
-
-TEST(Png, TellsHowMuchIsClippedAndWhatWouldShowIt) {
-    Image image{{10, 10}, std::vector<glm::vec3>(100, glm::vec3(0.5f))};
-    EXPECT_EQ(clipping_of(image, 0.0).share, 0.0);
-    EXPECT_EQ(clipping_of(image, 0.0).exposure, 1.0);
-    EXPECT_EQ(clipping_of(image, 2.0).share, 1.0);
-    for (std::size_t i = 0; i < 60; ++i) image.rgb[i] = glm::vec3(0.0f, 8.0f, 0.0f);
-    image.rgb[0].r = 1e30f;
-    EXPECT_EQ(clipping_of(image, 0.0).share, 0.6);
-    EXPECT_EQ(clipping_of(image, 0.0).exposure, -3.0) << "all but the brightest twentieth fits";
-    EXPECT_EQ(clipping_of(image, -3.0).share, 0.01);
-    EXPECT_EQ(clipping_of(Image{{1, 1}, {glm::vec3(0.0f)}}, 0.0).exposure, 0.0);
 }
 
 }  // namespace

@@ -1,11 +1,8 @@
 // The page of a race in a browser: Chromium without a window, where there is one.
 
 #include <algorithm>
-#include <cstdlib>
-#include <filesystem>
 #include <optional>
 #include <regex>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -15,6 +12,7 @@
 #include "app/race/page.h"
 #include "app/race/pictures.h"
 #include "app/race/record.h"
+#include "support/files/browser.h"
 #include "support/files/files.h"
 #include "support/files/process.h"
 #include "support/files/temporary_folder.h"
@@ -23,44 +21,16 @@
 namespace vkcppm {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-/// The browser among the folders of PATH.
-std::optional<std::string> chromium() {
-    std::istringstream folders(std::getenv("PATH") ? std::getenv("PATH") : "");
-    for (std::string folder; std::getline(folders, folder, ':');) {
-        for (const char* name : {"chromium", "chromium-browser", "google-chrome"}) {
-            if (fs::exists(fs::path(folder) / name)) return (fs::path(folder) / name).string();
-        }
-    }
-    return std::nullopt;
-}
-
-/// Every part of `text` that the first group of `pattern` takes.
-std::vector<std::string> all(const std::string& text, const std::string& pattern) {
-    const std::regex regex(pattern);
-    std::vector<std::string> found;
-    for (std::sregex_iterator it(text.begin(), text.end(), regex), end; it != end; ++it) found.push_back((*it)[1]);
-    return found;
-}
-
-/// What stands between `begin` and the next `end`.
-std::string between(const std::string& text, const std::string& begin, const std::string& end) {
-    const std::size_t at = text.find(begin);
-    if (at == std::string::npos) {
-        ADD_FAILURE() << "'" << begin << "' is not on the page";
-        return "";
-    }
-    return text.substr(at + begin.size(), text.find(end, at + begin.size()) - at - begin.size());
-}
+using test::all;
+using test::between;
 
 std::string without_tags(const std::string& html) { return std::regex_replace(html, std::regex("<[^>]*>"), " "); }
 
 class RaceInBrowser : public testing::Test {
 protected:
     void SetUp() override {
-        browser_ = chromium();
+        browser_ = test::chromium();
         if (!browser_) GTEST_SKIP() << "no chromium in PATH";
     }
 
@@ -71,26 +41,13 @@ protected:
         Scene scene;
         scene.file = "a </script> & b.gltf";
         const RaceResult result = test::made_up_race(names);
-        const RacePictures pictures = race_pictures(result, {{8, 6}, std::vector<glm::vec3>(48, glm::vec3(0.5f))}, 0.0);
+        const RacePictures pictures = race_pictures(result, {{8, 6}, std::vector<glm::vec3>(48, glm::vec3(0.5f))}, {});
         json_ = race_json(options, {scene, "a.exr", {{"vkcppm.relmse", "0.002"}}}, result, pictures);
         test::write_bytes(folder_ / "index.html", race_page(json_, pictures));
     }
 
-    /// The page after its script ran, with what follows # in its address; without the data that it was drawn from.
-    std::string drawn(const std::string& hash) {
-        const test::ProcessResult result = test::run_process(
-            {*browser_, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-             "--window-size=1280,900", "--user-data-dir=" + (folder_ / "profile").string(),
-             "--virtual-time-budget=5000", "--dump-dom", "file://" + (folder_ / "index.html").string() + hash},
-            folder_.path());
-        EXPECT_EQ(result.exit_code, 0) << result.err;
-        const std::size_t data = result.out.find("<script type=\"application/json\"");
-        EXPECT_NE(data, std::string::npos) << result.err;
-        const std::string page = result.out.substr(0, data);
-        const std::string alert = between(page, "<div id=\"alert\"", "</div>");
-        EXPECT_NE(alert.find("hidden"), std::string::npos) << alert;
-        return page;
-    }
+    /// The page after its script ran, with what follows # in its address.
+    std::string drawn(const std::string& hash) { return test::drawn_page(*browser_, folder_.path(), hash); }
 
     test::TemporaryFolder folder_;
     Json json_;

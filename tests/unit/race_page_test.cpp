@@ -28,7 +28,7 @@ struct Files {
     explicit Files(const std::vector<std::string>& names) : result(test::made_up_race(names)) {
         options.command = "vkcppm race 'a </script> b.gltf' -o out";
         scene.file = "</script><!-- &amp; .gltf";
-        pictures = race_pictures(result, reference, 0.0);
+        pictures = race_pictures(result, reference, {});
         json = race_json(options, {scene, "references/a.exr", {{"vkcppm.relmse", "0.001"}}}, result, pictures);
         page = race_page(json, pictures);
     }
@@ -171,7 +171,7 @@ TEST(RaceRecord, CurvesHaveEverySnapshotToTheLastBit) {
 TEST(RacePictures, DifferencesAndRadiiShareTheirScales) {
     const RaceResult result = test::made_up_race({"sppm", "cppm", "appm"});  // pictures of 0.25, 0.5, 0.75
     const Image reference{{8, 6}, std::vector<glm::vec3>(48, glm::vec3(0.5f))};
-    const RacePictures pictures = race_pictures(result, reference, 1.0);
+    const RacePictures pictures = race_pictures(result, reference, {ToneMap::none, 1.0});
     EXPECT_EQ(pictures.difference.high, 0.25);
     EXPECT_EQ(pictures.entrants[0].difference.rgb[0], false_colour(1.0));
     EXPECT_EQ(pictures.entrants[1].difference.rgb[0], false_colour(0.0));

@@ -10,6 +10,7 @@
 
 #include "app/commands.h"
 #include "app/console.h"
+#include "app/display.h"
 #include "app/interrupt.h"
 #include "app/load.h"
 #include "app/outputs.h"
@@ -220,7 +221,8 @@ void execute(const RaceOptions& options) {
 
     const RaceResult result = race_with_progress(scene, options, race, reference, device);
     print_warnings(result.warnings);
-    const RacePictures pictures = race_pictures(result, reference, options.exposure);
+    const Display display = display_of(options.display, reference, input.reference.string(), options.quiet);
+    const RacePictures pictures = race_pictures(result, reference, display);
     const nlohmann::ordered_json json = race_json(options, input, result, pictures);
     write_pictures(options, input, result, reference, pictures);
     write_file(options.folder / "curves.csv", curves_csv(result));

@@ -24,15 +24,6 @@ constexpr std::array<glm::u8vec3, 10> colours = {{{0, 114, 178},
                                                   {120, 130, 140}}};
 constexpr glm::u8vec3 no_winner_colour{200, 200, 200};
 
-std::vector<float> absolute_difference(const Image& image, const Image& reference) {
-    std::vector<float> differences;
-    for (std::size_t i = 0; i < image.rgb.size(); ++i) {
-        const glm::vec3 difference = abs(image.rgb[i] - reference.rgb[i]);
-        differences.push_back((difference.r + difference.g + difference.b) / 3.0f);
-    }
-    return differences;
-}
-
 WinnerPicture winner_picture(Extent extent, std::span<const std::vector<double>> errors) {
     const std::vector<int> nearest = winners(errors);
     WinnerPicture picture{{extent, {}}, winner_shares(nearest, errors.size())};
@@ -46,8 +37,9 @@ WinnerPicture winner_picture(Extent extent, std::span<const std::vector<double>>
 
 glm::u8vec3 entrant_colour(std::size_t entrant) { return colours[entrant % colours.size()]; }
 
-RacePictures race_pictures(const RaceResult& result, const Image& reference, double exposure) {
+RacePictures race_pictures(const RaceResult& result, const Image& reference, const Display& display) {
     RacePictures pictures;
+    pictures.display = display;
     const Extent extent = reference.extent;
     std::vector<float> all_differences, all_radii;
     std::vector<std::vector<double>> errors, errors_around;  // [entrants][pixels]
@@ -62,10 +54,10 @@ RacePictures race_pictures(const RaceResult& result, const Image& reference, dou
     pictures.radius.low = positive_quantile(all_radii, radius_tail);
     pictures.radius.high = positive_quantile(all_radii, 1.0 - radius_tail);
     pictures.radius.logarithmic = true;
-    pictures.reference = to_bitmap(reference, exposure);
+    pictures.reference = to_bitmap(reference, display);
     for (const RaceRun& run : result.runs) {
         const std::vector<float> difference = absolute_difference(run.image, reference);
-        pictures.entrants.push_back({to_bitmap(run.image, exposure),
+        pictures.entrants.push_back({to_bitmap(run.image, display),
                                      false_colours(extent, difference, pictures.difference),
                                      false_colours(extent, run.radius, pictures.radius)});
     }

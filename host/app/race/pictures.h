@@ -9,6 +9,7 @@
 #include <glm/ext/vector_uint3_sized.hpp>
 
 #include "study/false_colour.h"
+#include "core/display.h"
 #include "core/image.h"
 #include "study/race.h"
 
@@ -28,6 +29,7 @@ struct WinnerPicture {
 };
 
 struct RacePictures {
+    Display display;  // of pictures, not of maps
     Bitmap reference;
     std::vector<EntrantPictures> entrants;  // of the first seed
     ColourScale difference;                 // of all entrants: 0 to the value that 99 % of all pixels do not exceed
@@ -39,7 +41,7 @@ struct RacePictures {
 /// sRGB. Colours that the colour-blind can tell apart and that are seen on white and on black; they repeat after ten.
 glm::u8vec3 entrant_colour(std::size_t entrant);
 
-/// exposure: stops by which pictures, not maps, are brightened.
-RacePictures race_pictures(const RaceResult& result, const Image& reference, double exposure);
+/// display: of pictures, not of maps.
+RacePictures race_pictures(const RaceResult& result, const Image& reference, const Display& display);
 
 }  // namespace vkcppm

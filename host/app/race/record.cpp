@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 
 #include "app/measures.h"
+#include "app/page/html.h"
 #include "app/record.h"
+#include "core/display.h"
 #include "study/seeds.h"
 
 namespace vkcppm {
@@ -45,10 +47,6 @@ Json json_of(const Band& band) {
 
 Json json_of(const EqualError& equal) {
     return {{"reached", equal.reached}, {"at", json_of(equal.at)}, {"speedup", json_of(equal.speedup)}};
-}
-
-Json json_of(const ColourScale& scale) {
-    return {{"low", scale.low}, {"high", scale.high}, {"logarithmic", scale.logarithmic}};
 }
 
 /// Everything about one metric of one entrant.
@@ -106,7 +104,8 @@ Json race_json(const RaceOptions& options, const RaceInput& input, const RaceRes
     json["reference_made"] = options.make_reference.has_value();
     json["width"] = first.image.extent.width;
     json["height"] = first.image.extent.height;
-    json["exposure"] = options.exposure;
+    json["exposure"] = pictures.display.exposure;
+    json["tone_map"] = name_of(pictures.display.tone_map);
     const Settings& settings = first.entrant.settings;
     json["seconds"] = settings.seconds ? Json(*settings.seconds) : Json();
     json["iterations"] = settings.iterations == unbounded_iterations ? Json() : Json(settings.iterations);
@@ -114,8 +113,8 @@ Json race_json(const RaceOptions& options, const RaceInput& input, const RaceRes
     json["interrupted"] = result.interrupted;
     json["baseline"] = baseline.entrant.name;
     json["confidence"] = confidence;
-    json["difference_scale"] = json_of(pictures.difference);
-    json["radius_scale"] = json_of(pictures.radius);
+    json["difference_scale"] = scale_json(pictures.difference);
+    json["radius_scale"] = scale_json(pictures.radius);
     json["winner_reach"] = winner_reach;
     json["parameters"] = Json::array();
     setting::for_each([&](const auto& row) {

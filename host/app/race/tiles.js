@@ -1,50 +1,4 @@
-// The pictures of the page of a race, with the crop that is picked in one and shown of all.
-
-/** A figure with a picture that takes clicks, and its crop. */
-function tile(name, caption) {
-  const image = make('img', {
-    alt: `${name}: the whole picture`,
-    width: race.width,
-    height: race.height,
-    draggable: 'false',
-  });
-  const frame = make('div', {class: 'frame'});
-  const whole = make(
-    'div',
-    {class: 'whole', tabindex: 0, role: 'application', 'aria-label': `${name}: move the crop with the arrow keys`},
-    image,
-    frame,
-  );
-  const magnified = make('img', {alt: `${name}: the crop, magnified`});
-  const crop = make('div', {class: 'crop'}, magnified);
-  const pick = (event) => {
-    const bounds = image.getBoundingClientRect();
-    const {size} = state.crop;
-    choose({
-      crop: {
-        size,
-        x: Math.round(((event.clientX - bounds.left) / bounds.width) * race.width - size / 2),
-        y: Math.round(((event.clientY - bounds.top) / bounds.height) * race.height - size / 2),
-      },
-    });
-  };
-  whole.addEventListener('pointerdown', (event) => {
-    whole.setPointerCapture(event.pointerId);
-    pick(event);
-  });
-  whole.addEventListener('pointermove', (event) => {
-    if (event.buttons & 1) pick(event);
-  });
-  whole.addEventListener('keydown', (event) => {
-    const step = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key];
-    if (!step) return;
-    event.preventDefault();
-    const far = event.shiftKey ? state.crop.size : 1;
-    choose({crop: {...state.crop, x: state.crop.x + far * step[0], y: state.crop.y + far * step[1]}});
-  });
-  const figure = make('figure', {class: 'tile', 'data-name': name}, caption, whole, crop);
-  return {figure, image, frame, magnified, crop};
-}
+// The pictures of the page of a race.
 
 const tiles = [];
 
@@ -92,13 +46,7 @@ function buildTiles() {
     button.addEventListener('click', () => choose({view: name}));
     at('views').append(button);
   }
-  const select = at('crop-size');
-  for (const size of cropSizes) select.append(make('option', {value: size}, `${size}×${size}`));
-  select.addEventListener('change', () => {
-    const size = Number(select.value),
-      {x, y, size: old} = state.crop;
-    choose({crop: {size, x: Math.round(x + (old - size) / 2), y: Math.round(y + (old - size) / 2)}});
-  });
+  buildCropSizes();
 }
 
 /** So many pictures side by side that none is too small and the last row is not left with few. */
@@ -109,43 +57,19 @@ function columns() {
 }
 
 function drawTiles(metric) {
-  const crop = state.crop;
-  crop.x = Math.round(Math.max(0, Math.min(race.width - crop.size, crop.x)));
-  crop.y = Math.round(Math.max(0, Math.min(race.height - crop.size, crop.y)));
-  const part = (value, of) => `${(100 * value) / of}%`;
-  for (const {image, frame, magnified, crop: box, source, entrant, told} of tiles) {
+  holdCrop();
+  for (const tile of tiles) {
+    const {image, magnified, source, entrant, told} = tile;
     if (image.src !== source()) image.src = magnified.src = source();
-    Object.assign(frame.style, {
-      left: part(crop.x, race.width),
-      top: part(crop.y, race.height),
-      width: part(crop.size, race.width),
-      height: part(crop.size, race.height),
-    });
-    box.style.aspectRatio = '1';
-    Object.assign(magnified.style, {
-      width: part(race.width, crop.size),
-      height: part(race.height, crop.size),
-      left: part(-crop.x, crop.size),
-      top: part(-crop.y, crop.size),
-    });
+    placeCrop(tile);
     if (entrant) {
       told.textContent = digits(entrant.metrics[metric.name].final?.mean ?? null);
       told.title = `${metric.title} at its end`;
     }
   }
   at('tiles').style.setProperty('--columns', columns());
-  at('crop-size').value = crop.size;
-  at('crop-place').textContent = `from column ${crop.x}, row ${crop.y}`;
   for (const button of at('views').children) button.setAttribute('aria-pressed', button.dataset.view === state.view);
   const scale = {difference: race.difference_scale, radius: race.radius_scale}[state.view];
   const unit = state.view === 'radius' ? 'm' : 'W m⁻² sr⁻¹';
-  at('scale').replaceChildren(
-    ...(scale
-      ? [
-          `${number(scale.low)} ${unit}`,
-          make('img', {src: pictures.ramp, alt: 'colours from blue over yellow to red'}),
-          `${number(scale.high)} ${unit}${scale.logarithmic ? ', logarithmic' : ' and more'}`,
-        ]
-      : []),
-  );
+  drawScale(scale, unit);
 }

@@ -65,6 +65,7 @@ std::string read_environment_of(const std::filesystem::path& file) {
 
 std::string read_exr_picture(const std::filesystem::path& file) {
     const Image image = read_exr(file);
+    read_exr_channels(file, "");  // all of them
     read_exr_attributes(file);
     return image.rgb.size() == image.extent.pixels() && !image.rgb.empty() ? "" : "a picture without pixels";
 }

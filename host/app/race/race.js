@@ -2,12 +2,6 @@
 // "pictures" are data URIs. What is chosen stands in the address:
 // #metric=relmse&view=difference&crop=X,Y,SIZE&hide=sppm,appm
 
-addEventListener('error', (event) => {
-  const alert = document.getElementById('alert');
-  alert.hidden = false;
-  alert.textContent = `This page failed: ${event.message}`;
-});
-
 const race = JSON.parse(document.getElementById('race').textContent);
 const pictures = JSON.parse(document.getElementById('pictures').textContent);
 const entrants = race.entrants.map((entrant, index) => ({...entrant, index, pictures: pictures.entrants[index]}));
@@ -18,49 +12,9 @@ const views = [
   ['difference', 'Difference'],
   ['radius', 'Radius'],
 ];
-const cropSizes = [8, 16, 32, 64, 128].filter((size) => size <= Math.min(race.width, race.height));
-if (cropSizes.length === 0) cropSizes.push(Math.min(race.width, race.height));
+const extent = {width: race.width, height: race.height};
+const cropSizes = cropSizesOf(extent);
 const percent = Math.round(100 * race.confidence);
-
-// ---- Small helpers
-
-const svgSpace = 'http://www.w3.org/2000/svg';
-
-/** An element with attributes and children; strings become text. */
-function make(name, attributes = {}, ...children) {
-  const svg = ['svg', 'g', 'path', 'line', 'rect', 'text', 'circle', 'title', 'defs', 'clipPath', 'tspan'].includes(
-    name,
-  );
-  const element = svg ? document.createElementNS(svgSpace, name) : document.createElement(name);
-  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-  element.append(...children.filter((child) => child !== null && child !== undefined));
-  return element;
-}
-
-const at = (id) => document.getElementById(id);
-const plural = (count, word) => `${count.toLocaleString('en')} ${word}${count === 1 ? '' : 's'}`;
-
-/** Three significant digits, without an exponent where they can be read. */
-function number(value) {
-  if (value === null || !Number.isFinite(value)) return '–';
-  if (value === 0) return '0';
-  const size = Math.abs(value);
-  if (size >= 1e6 || size < 1e-5) {
-    const [digits, exponent] = value.toExponential(2).split('e');
-    return `${Number(digits)}·10${[...String(Number(exponent))].map((c) => '⁰¹²³⁴⁵⁶⁷⁸⁹'[c] ?? '⁻').join('')}`;
-  }
-  return size >= 100 ? Math.round(value).toLocaleString('en') : String(Number(value.toPrecision(3)));
-}
-
-/** The same with all three digits, for columns. */
-function digits(value) {
-  const text = number(value);
-  return Number.isFinite(value) && value !== 0 && /^[0-9.]+$/.test(text) && Math.abs(value) < 100
-    ? value.toPrecision(3)
-    : text;
-}
-
-const signed = (value) => value.toFixed(2).replace('-', '−');
 
 /** "1.23" with its interval behind it, if there is one. */
 function estimate(value, text = digits, unit = '') {
@@ -81,11 +35,7 @@ function readAddress() {
   const chosen = new URLSearchParams(location.hash.slice(1));
   if (race.metrics.some((metric) => metric.name === chosen.get('metric'))) state.metric = chosen.get('metric');
   if (views.some(([name]) => name === chosen.get('view'))) state.view = chosen.get('view');
-  const crop = (chosen.get('crop') ?? '').split(',').map(Number);
-  const size = cropSizes.includes(crop[2]) ? crop[2] : cropSizes[Math.min(2, cropSizes.length - 1)];
-  const place =
-    crop.length >= 2 && crop.every(Number.isFinite) ? crop : [(race.width - size) / 2, (race.height - size) / 2];
-  state.crop = {x: place[0], y: place[1], size};
+  state.crop = cropOf(chosen.get('crop'));
   const hidden = (chosen.get('hide') ?? '').split(',');
   state.hidden = new Set(entrants.map((entrant) => entrant.name).filter((name) => hidden.includes(name)));
 }
