@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <span>
 #include <tuple>
@@ -21,6 +22,7 @@
 #include "flat/lights.h"
 #include "flat/surface.h"
 #include "flat/textures.h"
+#include "scene/diagnosis/shell.h"
 #include "scene/instances.h"
 
 namespace vkcppm {
@@ -353,6 +355,27 @@ void add_geometry(const Scene& scene, const std::vector<SurfaceTraits>& traits, 
     }
 }
 
+/// Whether a camera stands within closed surfaces that face away from it, as in a box of which it is to see the inside:
+/// it would see nothing of it if it did not see backs. O(triangles); instances are left out.
+bool is_enclosed(const Scene& scene, const std::vector<SurfaceTraits>& traits) {
+    return std::ranges::any_of(scene.cameras, [&](const Camera& camera) {
+        const glm::dvec3 eye(camera.to_world[3]);
+        const double turns = tbb::parallel_reduce(
+            tbb::blocked_range<std::uint32_t>(0, world_triangles(scene).last), 0.0,
+            [&](const tbb::blocked_range<std::uint32_t>& range, double sum) {
+                for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
+                    const Triangle& t = scene.triangles[i];
+                    if (!traits[t.material].culled) continue;
+                    const auto at = [&](int corner) { return glm::dvec3(scene.positions[t.vertex[corner]]); };
+                    sum += share_of_directions({at(0), at(1), at(2)}, eye);
+                }
+                return sum;
+            },
+            std::plus<>());
+        return turns > 0.99;
+    });
+}
+
 /// Which of nested solids counts, and what is needed to tell in which of them the eye is.
 void add_solids(const Scene& scene, const std::vector<SurfaceTraits>& traits, FlatScene& flat) {
     const std::vector<std::uint32_t> priorities = priorities_of(scene, traits);
@@ -425,7 +448,10 @@ FlatScene flatten(const Scene& scene) {
                                                      scene.materials.size(), PATH_NO_MEDIUM - 1));
     }
     TextureTable textures(scene);
-    const std::vector<SurfaceTraits> traits = traits_of(scene);
+    std::vector<SurfaceTraits> traits = traits_of(scene);
+    if (is_enclosed(scene, traits)) {
+        for (SurfaceTraits& of_material : traits) of_material.culled = false;
+    }
     add_geometry(scene, traits, flat);
     for (std::size_t i = 0; i < traits.size(); ++i) {
         flat.materials.push_back(surface_of(scene.materials[i], traits[i], flat.frame.scale, textures));

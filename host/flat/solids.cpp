@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -142,12 +142,30 @@ private:
     std::size_t work_ = 0;
 };
 
+/// The shells of solid glass, in the order of their first triangles. Those of a material are looked at by themselves
+/// where they are whole, for bodies that touch by their edges are not one; the others together, as a body may have
+/// several materials.
 std::vector<Shell> solid_shells(const Scene& scene, const std::vector<SurfaceTraits>& traits) {
-    std::vector<std::uint32_t> triangles;
+    std::vector<std::vector<std::uint32_t>> triangles(scene.materials.size());
     for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
-        if (is_solid(traits[scene.triangles[i].material])) triangles.push_back(i);
+        const std::uint32_t material = scene.triangles[i].material;
+        if (is_solid(traits[material])) triangles[material].push_back(i);
     }
-    return find_shells(scene, triangles);
+    std::vector<Shell> shells;
+    std::vector<std::uint32_t> open;
+    const auto add = [&](std::vector<Shell> found) { std::ranges::move(found, std::back_inserter(shells)); };
+    for (const std::vector<std::uint32_t>& of_material : triangles) {
+        std::vector<Shell> found = find_shells(scene, of_material);
+        if (std::ranges::all_of(found, [](const Shell& shell) { return shell.open_edges == 0; })) {
+            add(std::move(found));
+        } else {
+            open.insert(open.end(), of_material.begin(), of_material.end());
+        }
+    }
+    std::ranges::sort(open);
+    add(find_shells(scene, open));
+    std::ranges::sort(shells, {}, [](const Shell& shell) { return shell.triangles.front(); });
+    return shells;
 }
 
 std::uint32_t material_of(const Scene& scene, const Shell& shell) {
@@ -254,15 +272,11 @@ std::vector<std::uint32_t> priorities_of(const Scene& scene, const std::vector<S
 }
 
 Media media_at(const std::vector<SolidFace>& faces, const glm::vec3& point) {
-    // How often each winds around the point, as winding_number() of scene/diagnosis/shell.h; that which counts first.
+    // How often each winds around the point; that which counts first.
     std::map<std::pair<std::uint32_t, std::uint32_t>, double, std::greater<>> turns;
     for (const SolidFace& face : faces) {
-        const auto at = [&](int corner) { return glm::dvec3(face.corners[corner]) - glm::dvec3(point); };
-        const glm::dvec3 a = at(0), b = at(1), c = at(2);
-        const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
-        const double y = glm::dot(a, glm::cross(b, c));
-        const double x = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
-        if (y != 0.0 || x != 0.0) turns[{face.priority, face.material}] += std::atan2(y, x) / (2.0 * std::numbers::pi);
+        const Triangle3 corners{glm::dvec3(face.corners[0]), glm::dvec3(face.corners[1]), glm::dvec3(face.corners[2])};
+        turns[{face.priority, face.material}] += share_of_directions(corners, glm::dvec3(point));
     }
     std::vector<std::uint32_t> media;
     for (const auto& [solid, winding] : turns) {

@@ -62,6 +62,7 @@ void expect_mean(const Image& image, const glm::dvec3& want, double relative, co
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c], want[c], relative * want[c] + 2e-4) << what << ", channel " << c;
 }
 
+// Each needs more than five seconds, for scenes whose kernels no other test has: each is compiled for it, three times.
 class SeeThrough : public GpuTest {
 protected:
     /// The mean of the picture, which is to be of one colour all over, by photon mapping and by path tracing.
@@ -192,6 +193,12 @@ TEST_F(SeeThrough, TheCameraDoesNotSeeBacks) {
         }
         expect_mean(traced(in_the_sun(in_shadow), small_settings()), glm::dvec3(0.0), 0.0, "the same, paths");
     }
+    // The inside of a closed body is there, and keeps out the light.
+    Scene inside;
+    inside.environment = Environment{{1, 1}, {glm::vec3(1.0f)}};
+    add_box(inside, {-1, -1, -1}, {1, 1, 1}, add_material(inside, lambert(glm::vec3(0.5f))), false);
+    add_camera(inside, {0.1, 0.2, 0.3}, {0.1, 0.2, -1.0}, 0.5);
+    expect_seen(inside, glm::dvec3(0.0), 0.0, "in a closed box", 4);
     // The back of glass is its inside, and is there.
     const auto block = [](Scene& s) {
         add_box(s, {-1.2, -1.2, 0.5}, {1.2, 1.2, 1}, add_material(s, glass(1.5f)), false);
@@ -294,7 +301,15 @@ TEST_F(SeeThrough, LiquidsInGlassMeetItByTheRelativeIndex) {
         };
         const bool nested = !flatten(before_a_lamp(slabs)).nested.empty();
         EXPECT_EQ(nested, c.gap <= 0.0) << c.name;
-        expect_seen(before_a_lamp(slabs), glm::dvec3(c.want), 0.01, c.name, 64);
+        // Without any reflection between them 0.923 instead of 0.917.
+        expect_seen(before_a_lamp(slabs), glm::dvec3(c.want), 0.004, c.name, 64);
+        // Radiance that is not scaled at one of the faces is off by the squared ratio of two indices.
+        Scene furnace;
+        furnace.environment = Environment{{1, 1}, {glm::vec3(1.0f)}};
+        slabs(furnace);
+        add_camera(furnace, {0.0, -1.5, 3.0}, {0, 0, 1}, 0.3);
+        expect_mean(valid_picture(furnace, small_settings(), 8), glm::dvec3(1.0), 0.03,
+                    fmt::format("{}, under a white sky", c.name));
         expect_mean(valid_picture(in_the_sun(slabs), with_photons(), 32), glm::dvec3(0.02 * c.want), 0.03,
                     fmt::format("{}, lit", c.name));
     }

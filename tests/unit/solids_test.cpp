@@ -76,6 +76,13 @@ TEST(Solids, TheSmallerCounts) {
     EXPECT_EQ(priorities_of(scene, traits_of(scene)), (std::vector<std::uint32_t>{1, 2, 0}));
 }
 
+TEST(Solids, ThatTouchByTheirEdgesAreTwo) {
+    Scene scene = two_glasses();
+    add_box(scene, {0, 0, 0}, {1, 1, 1}, outer, false);
+    add_box(scene, {0, 1, 0}, {1, 1.5, 1}, inner, false);
+    EXPECT_EQ(priorities_of(scene, traits_of(scene)), (std::vector<std::uint32_t>{1, 2}));
+}
+
 TEST(Solids, OfOneBodyAreOne) {
     Scene scene = two_glasses();
     add_box(scene, {0, 0, 0}, {1, 1, 1}, outer, false);

@@ -175,19 +175,20 @@ std::vector<Shell> find_shells(const Scene& scene, std::span<const std::uint32_t
     return shells;
 }
 
+double share_of_directions(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& point) {
+    const glm::dvec3 a = corners[0] - point, b = corners[1] - point, c = corners[2] - point;
+    const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+    const double y = glm::dot(a, glm::cross(b, c));
+    const double x = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
+    // A triangle that the point lies on covers half of all directions, of which side only rounding could tell.
+    const double least = 1e-9 * la * lb * lc;
+    return std::abs(y) > least || x > least ? std::atan2(y, x) / (2.0 * std::numbers::pi) : 0.0;
+}
+
 double winding_number(const Scene& scene, const Shell& shell, const glm::dvec3& point) {
-    double half_angles = 0.0;
-    for (const std::uint32_t triangle : shell.triangles) {
-        const std::array<glm::dvec3, 3> p = corners_of(scene, triangle);
-        const glm::dvec3 a = p[0] - point, b = p[1] - point, c = p[2] - point;
-        const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
-        const double y = glm::dot(a, glm::cross(b, c));
-        const double x = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
-        // A triangle that the point lies on covers half of all directions, of which side only rounding could tell.
-        const double least = 1e-9 * la * lb * lc;
-        if (std::abs(y) > least || x > least) half_angles += std::atan2(y, x);
-    }
-    return half_angles / (2.0 * std::numbers::pi);
+    double sum = 0.0;
+    for (const std::uint32_t triangle : shell.triangles) sum += share_of_directions(corners_of(scene, triangle), point);
+    return sum;
 }
 
 }  // namespace vkcppm

@@ -1,6 +1,7 @@
 #pragma once
 // Surfaces in one piece: what they enclose, and what is inside.
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,8 +30,12 @@ struct Shell {
 /// belong to none.
 std::vector<Shell> find_shells(const Scene& scene, std::span<const std::uint32_t> triangles);
 
+/// The share of all directions in which the triangle is seen from the point; negative from its front (van Oosterom and
+/// Strackee 1983). Of those of a closed surface the sum is how often it winds around the point.
+double share_of_directions(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& point);
+
 /// How often the shell winds around the point: 1 inside, 0 outside, -1 inside one whose fronts face inwards, 1/2 on a
-/// smooth surface. The sum of the triangles' solid angles over 4 pi (van Oosterom and Strackee 1983).
+/// smooth surface.
 double winding_number(const Scene& scene, const Shell& shell, const glm::dvec3& point);
 
 }  // namespace vkcppm
