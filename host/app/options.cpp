@@ -458,12 +458,11 @@ template <typename T> constexpr Command command(std::string_view name, const cha
 
 /// The first is that of all words which no other begins with.
 constexpr std::array commands{
-    command<RenderOptions>(
-        "",
-        "Renders a glTF scene by progressive photon mapping on a Vulkan device.\n"
-        "Other commands: vkcppm race, vkcppm reference, vkcppm compare, vkcppm check, vkcppm info,\n"
-        "vkcppm devices, vkcppm doctor; each has its own --help.\n"
-        "A scene of such a name is given as ./compare."),
+    command<RenderOptions>("",
+                           "Renders a glTF scene by progressive photon mapping on a Vulkan device.\n"
+                           "Other commands: vkcppm race, vkcppm reference, vkcppm compare, vkcppm check, vkcppm info,\n"
+                           "vkcppm devices, vkcppm doctor; each has its own --help.\n"
+                           "A scene of such a name is given as ./compare."),
     command<RaceOptions>(
         "race",
         "Renders a scene by several estimators side by side and compares their errors: against iterations,\n"

@@ -158,7 +158,7 @@ Extents add_placed(const Scene& scene, const Placed& placed, FlatScene& flat) {
         flat.shading[i] = shading_of(scene, source_of(scene, flat, i), face_normal(flat.triangles[i]));
         return corners;
     };
-    return tbb::parallel_reduce(
+    return tbb::parallel_deterministic_reduce(
         tbb::blocked_range<std::size_t>(first, last), Extents(),
         [&](const tbb::blocked_range<std::size_t>& range, Extents some) {
             for (std::size_t i = range.begin(); i < range.end(); ++i) {
@@ -360,8 +360,8 @@ void add_geometry(const Scene& scene, const std::vector<SurfaceTraits>& traits, 
 bool is_enclosed(const Scene& scene, const std::vector<SurfaceTraits>& traits) {
     return std::ranges::any_of(scene.cameras, [&](const Camera& camera) {
         const glm::dvec3 eye(camera.to_world[3]);
-        const double turns = tbb::parallel_reduce(
-            tbb::blocked_range<std::uint32_t>(0, world_triangles(scene).last), 0.0,
+        const double turns = tbb::parallel_deterministic_reduce(
+            tbb::blocked_range<std::uint32_t>(0, world_triangles(scene).last, 1u << 14), 0.0,
             [&](const tbb::blocked_range<std::uint32_t>& range, double sum) {
                 for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
                     const Triangle& t = scene.triangles[i];

@@ -58,9 +58,10 @@ TEST_P(LightRange, WindowsTheLightAndEndsIt) {
     scene.lights[0].range = 1.6;
     Settings settings;
     settings.size = Extent{pixels, pixels};
-    settings.photons = 1u << 18;
+    settings.photons = sampled ? 256u : 1u << 18;
     settings.direct = GetParam();
-    const Image image = valid_picture(scene, settings, 16);
+    // Radiance differs by a quarter over a pixel: where its rays are placed is all the noise there is.
+    const Image image = valid_picture(scene, settings, sampled ? 512 : 16);
     double got = 0.0, want = 0.0;
     for (std::uint32_t i = 0; i < pixels * pixels; ++i) {
         const double x = side * ((i % pixels + 0.5) / pixels - 0.5), z = side * ((i / pixels + 0.5) / pixels - 0.5);
@@ -84,8 +85,8 @@ TEST_F(GpuTest, ARangeOfASpotLightIsThatOfAPointLight) {
     scene.lights[0].range = 1.6;
     Settings settings;
     settings.size = Extent{pixels, pixels};
-    settings.photons = 1024;
-    const Image image = valid_picture(scene, settings, 16);
+    settings.photons = 256;
+    const Image image = valid_picture(scene, settings, 512);
     for (const std::uint32_t x : {8u, 10u, 12u}) {
         const double at = side * ((x + 0.5) / pixels - 0.5), here = expected(at, 0.125, 1.0, 1.6);
         EXPECT_NEAR(image.at(x, 8).g, here, 0.02 * here + 2e-4) << at;

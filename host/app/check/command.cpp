@@ -118,7 +118,8 @@ ExitCode execute(const CheckOptions& options) {
     const std::optional<fs::path> page = within("index.html"), record = within("check.json");
     // Its line goes to standard output.
     check_outputs({options.image, options.reference},
-                  {{"--junit", options.junit, ".xml"}, {"--report", page, ".html"}, {"--report", record, ".json"}}, true);
+                  {{"--junit", options.junit, ".xml"}, {"--report", page, ".html"}, {"--report", record, ".json"}},
+                  true);
     const NoisyPicture image = read_picture(options.image), reference = read_picture(options.reference);
     const Extent extent = image.mean.extent;
     const Check result = check(image, reference, resolve(options, image, reference));
