@@ -421,8 +421,8 @@ double Integrator::disc_width() const {
     const std::uint32_t band = bands_.count() - 1;
     const std::uint64_t count = bands_.size(band);
     const auto states = buffers_.at(Binding::pixels, band).download<gpu::PixelState>(count);
-    const auto positions = buffers_.at(Binding::hit_position, band).download<gpu::HitPosition>(count);
-    const auto emissions = buffers_.at(Binding::hit_emission, band).download<gpu::HitEmission>(count);
+    const auto positions = buffers_.at(Binding::hit_position).download<gpu::HitPosition>(count);
+    const auto emissions = buffers_.at(Binding::hit_emission).download<gpu::HitEmission>(count);
     std::vector<double> widths;
     for (std::uint64_t i = 0; i < count; ++i) {
         if ((positions[i].state & HIT_DIFFUSE) == 0 || !(emissions[i].footprint > 0.0f)) continue;

@@ -88,7 +88,7 @@ def rough_metal():
         "L = Le (b A + (1 - b) B), A the mean of G2/G1 and B that of G2/G1 (1 - |wo.h|)^5 over the normals h of GGX "
         "that are visible from the pixel (height-correlated Smith, single scattering), integrated in double; alpha "
         "0.25 left and 0.64 right, b = (0.9, 0.5, 0.2), Le = (0.6, 0.8, 1)",
-        camera, radiance, sampled=(96, 131072), gathered=(256, 131072))
+        camera, radiance, sampled=(256, 131072), gathered=(256, 131072))
     for name, x in (("alpha 0.25", (2, 30)), ("alpha 0.64", (34, 62))):
         expected.add_region(f"{name}, slanted", x, (6, 32))
         expected.add_region(f"{name}, steep", x, (32, 62))

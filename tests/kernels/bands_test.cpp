@@ -36,6 +36,7 @@ void expect_same(Rig& whole, Rig& cut, const std::string& what) {
     expect_same_state(cut, whole, what);
     EXPECT_EQ(cut.integrator.aovs(), whole.integrator.aovs()) << what;
     EXPECT_EQ(cut.integrator.radii(), whole.integrator.radii()) << what;
+    EXPECT_GT(cut.integrator.disc_width(), 0.0) << what;  // of the last band
     expect_same_picture(cut.integrator.resolve(), whole.integrator.resolve(), what);
     EXPECT_EQ(cut.report().stored_photons, whole.report().stored_photons) << what;
 }
