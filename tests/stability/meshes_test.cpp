@@ -136,7 +136,7 @@ TEST_F(HardMeshes, OfNeedlesAndSlivers) {
     }
     const Image fan = picture(floor([&](Scene& scene) {
         for (int i = 0; i < 2000; ++i) {
-            add_triangle(scene, {-1, 0, -1}, {-1.0 + (i + 1) / 1000.0, 0, 1}, {-1.0 + i / 1000.0, 0, 1}, 0);
+            add_triangle(scene, {-1, 0, -1}, {-1.0 + i / 1000.0, 0, 1}, {-1.0 + (i + 1) / 1000.0, 0, 1}, 0);
         }
         add_triangle(scene, {-1, 0, -1}, {1, 0, 1}, {1, 0, -1}, 0);
     }));
