@@ -169,10 +169,13 @@ void print_table(const Report& report) {
 void execute(const RenderOptions& options) {
     catch_interrupts();
     const bool keeps_elsewhere = options.resume && !is_same_file(*options.resume, *options.checkpoint);
+    // What is gone on from in its place is read first, which tells whether it is a checkpoint.
+    const std::string ending =
+        options.resume && !keeps_elsewhere ? options.checkpoint->extension().string() : std::string();
     const std::vector<Output> outputs = {{"-o", options.output, ".exr"},
                                          {"--png", options.png, ".png"},
                                          {"--stats", options.stats, ".json"},
-                                         {"--checkpoint", options.checkpoint, ""}};
+                                         {"--checkpoint", options.checkpoint, ending.c_str()}};
     check_outputs({options.scene.file, options.scene.environment, options.reference,
                    keeps_elsewhere ? options.resume : std::nullopt},
                   outputs, options.hash);

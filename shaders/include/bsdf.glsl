@@ -73,7 +73,8 @@ vec3 glass_reflectance(Bsdf b, float cosine, out float cosine_t) {
     vec3 r = vec3(fresnel_dielectric(cosine, b.eta, cosine_t));
     if (HAS_SPECULAR_GLASS && cosine_t > 0.0 && b.eta != 1.0) {
         float grazing = schlick_power(min(cosine, cosine_t));
-        r = b.specular * clamp(grazing + b.specular_color * (r - grazing), vec3(0.0), vec3(1.0));
+        // Exactly Fresnel's where the factors are 1.
+        r = b.specular * clamp(b.specular_color * r + (1.0 - b.specular_color) * grazing, vec3(0.0), vec3(1.0));
     }
     return r;
 }

@@ -177,7 +177,7 @@ TEST_F(Checkpoint, OfAnotherDeviceIsTakenWithAWarning) {
     const ProcessResult result = render({"--iterations", "3", "-o", "a.exr", "--resume", "a.ckpt"});
     expect_done(result);
     EXPECT_TRUE(contains(result.err, "warning: a.ckpt was written on ?" + device.substr(1))) << result.err;
-    EXPECT_FALSE(contains(render({"--iterations", "4", "-o", "a.exr", "--resume", "a.ckpt"}).err, "warning"));
+    EXPECT_FALSE(contains(render({"--iterations", "4", "-o", "a.exr", "--resume", "a.ckpt"}).err, "warning: a.ckpt"));
 }
 
 TEST_F(Checkpoint, KeepsTheCurveOfAMeasuredRender) {
