@@ -119,7 +119,7 @@ void add_scene(CLI::App& app, SceneOptions& scene) {
     app.add_option("SCENE", scene.file, "glTF 2.0 file, .gltf or .glb")->required()->type_name("");
     app.add_option("--root", scene.root,
                    "Folder that holds all files which the scene names, as by ../textures/x.png; what lies outside is\n"
-                   "not read (default: the folder above the scene's)")
+                   "not read (default: the scene's own folder)")
         ->type_name("DIR");
     add(app, "--animation", "NAME|INDEX|all", scene.animation, parse_name,
         "Put nodes, joints and morph targets where this animation has them (default: at rest)");

@@ -433,10 +433,10 @@ TEST(Gltf, AVariantHasOtherMaterials) {
 
 // ---- files beside the scene ----
 
-TEST(Gltf, ReadsFilesBesideItsFolderAndWithARootElsewhere) {
+TEST(Gltf, ReadsFilesBelowItsFolderAndWithARootElsewhere) {
     const test::TemporaryFolder folder;
     const GltfBuilder builder = test::one_triangle();
-    std::filesystem::create_directories(folder / "a/b/models");
+    std::filesystem::create_directories(folder / "a/b/models/parts");
     std::filesystem::create_directories(folder / "a/b/data");
     const std::filesystem::path scene = folder / "a/b/models/scene.gltf";
     const auto triangles = [&](const std::string& uri, const GltfOptions& options = {}) {
@@ -447,18 +447,22 @@ TEST(Gltf, ReadsFilesBesideItsFolderAndWithARootElsewhere) {
     test::write_bytes(folder / "a/far.bin", builder.bytes());
     std::filesystem::create_symlink(folder / "a/b/data/near.bin", folder / "a/b/models/near.bin");
     std::filesystem::create_symlink(folder / "a/far.bin", folder / "a/b/models/far.bin");
-    EXPECT_EQ(triangles("../data/near.bin"), 1u);
-    EXPECT_EQ(triangles("near.bin"), 1u);
-    EXPECT_EQ(triangles("x/../../data/./near.bin"), 1u);
+    test::write_bytes(folder / "a/b/models/parts/own.bin", builder.bytes());
+    EXPECT_EQ(triangles("parts/own.bin"), 1u);
+    EXPECT_EQ(triangles("x/../parts/./own.bin"), 1u);
+    const GltfOptions above{.root = folder / "a/b"};
+    EXPECT_EQ(triangles("../data/near.bin", above), 1u);
+    EXPECT_EQ(triangles("near.bin", above), 1u);
+    EXPECT_EQ(triangles("x/../../data/./near.bin", above), 1u);
     EXPECT_EQ(triangles("../../far.bin", {.root = folder / "a"}), 1u);
     EXPECT_EQ(triangles("far.bin", {.root = folder / "a"}), 1u);
-    for (const char* uri : {"../../far.bin", "far.bin", "../data/../../far.bin"}) {
+    for (const char* uri : {"../../far.bin", "far.bin", "../data/near.bin", "near.bin", "parts/../../data/near.bin"}) {
         const auto error = test::thrown_by([&] { triangles(uri); });
         ASSERT_TRUE(error) << uri;
         EXPECT_EQ(error->code(), ExitCode::bad_scene);
         EXPECT_NE(std::string(error->what()).find("--root"), std::string::npos) << error->what();
     }
-    EXPECT_TRUE(test::thrown_by([&] { triangles("../data/near.bin", {.root = folder / "a/b/models"}); }));
+    EXPECT_TRUE(test::thrown_by([&] { triangles("../../far.bin", above); }));
     const auto error = test::thrown_by([&] { triangles("near.bin", {.root = folder / "none"}); });
     ASSERT_TRUE(error);
     EXPECT_EQ(error->code(), ExitCode::no_input);

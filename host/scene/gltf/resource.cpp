@@ -46,9 +46,7 @@ bool is_inside(const std::filesystem::path& path, const std::filesystem::path& r
 }  // namespace
 
 std::filesystem::path default_root(const std::filesystem::path& file) {
-    const std::filesystem::path folder = std::filesystem::canonical(std::filesystem::absolute(file)).parent_path();
-    const std::filesystem::path above = folder.parent_path();
-    return above == above.root_path() ? folder : above;
+    return std::filesystem::canonical(std::filesystem::absolute(file)).parent_path();
 }
 
 std::optional<Bytes> read_uri(const std::string& uri, std::size_t limit, const std::string& object,
