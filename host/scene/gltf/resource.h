@@ -15,8 +15,8 @@ using Bytes = std::vector<std::uint8_t>;
 /// The first `limit` bytes of a regular file, or all; nothing, and why, where it fails. A pipe or a device could block.
 std::optional<Bytes> read_bytes(const std::filesystem::path& path, std::size_t limit, std::string& why);
 
-/// The folder below which a scene's files may lie where none is given: the scene's own, for a stranger's scene is not to
-/// show what lies beside it. `file` exists.
+/// The folder below which a scene's files may lie where none is given: the scene's own, for a stranger's scene is not
+/// to show what lies beside it. `file` exists.
 std::filesystem::path default_root(const std::filesystem::path& file);
 
 /// The bytes of a data URI, or the first `limit` of the file that a relative URI means from the folder of `file` on,
