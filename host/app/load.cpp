@@ -23,7 +23,7 @@ Environment load_environment(const SceneOptions& options, Scene& scene) {
     const auto strength = float(options.environment_strength);
     for (glm::vec3& radiance : image.rgb) {
         radiance *= strength;
-        if (std::isfinite(radiance.r) && std::isfinite(radiance.g) && std::isfinite(radiance.b)) continue;
+        if (is_finite(radiance)) continue;
         throw Error(ExitCode::usage,
                     fmt::format("--environment-strength {} takes {} out of floats", strength, file.string()));
     }

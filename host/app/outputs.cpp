@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string>
 #include <string_view>
 
 #include <fmt/format.h>
 
+#include "core/ending.h"
 #include "core/error.h"
 #include "io/atomic_file.h"
 
@@ -19,12 +19,6 @@ namespace {
 constexpr std::array<std::string_view, 22> known_endings = {
     ".exr", ".png", ".json", ".jpg", ".jpeg", ".hdr",  ".tif", ".tiff", ".bmp",  ".tga",   ".gif",
     ".pfm", ".ppm", ".webp", ".pdf", ".svg",  ".gltf", ".glb", ".bin",  ".html", ".blend", ".csv"};
-
-std::string ending_of(const fs::path& file) {
-    std::string ending = file.extension().string();
-    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return ending;
-}
 
 void check_ending(const Output& output) {
     const std::string ending = ending_of(*output.file);

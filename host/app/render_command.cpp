@@ -20,6 +20,7 @@
 #include "app/record.h"
 #include "app/reference.h"
 #include "app/validation.h"
+#include "core/ending.h"
 #include "core/error.h"
 #include "core/fnv1a.h"
 #include "core/metrics.h"
@@ -170,8 +171,7 @@ void execute(const RenderOptions& options) {
     catch_interrupts();
     const bool keeps_elsewhere = options.resume && !is_same_file(*options.resume, *options.checkpoint);
     // What is gone on from in its place is read first, which tells whether it is a checkpoint.
-    const std::string ending =
-        options.resume && !keeps_elsewhere ? options.checkpoint->extension().string() : std::string();
+    const std::string ending = options.resume && !keeps_elsewhere ? ending_of(*options.checkpoint) : std::string();
     const std::vector<Output> outputs = {{"-o", options.output, ".exr"},
                                          {"--png", options.png, ".png"},
                                          {"--stats", options.stats, ".json"},

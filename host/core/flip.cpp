@@ -198,8 +198,6 @@ std::vector<double> flip(const Plane& image, const Plane& reference, Extent exte
     return errors;
 }
 
-bool finite(const glm::vec3& pixel) { return std::isfinite(pixel.r + pixel.g + pixel.b); }
-
 /// Of the pictures as `screen` shows them, the largest over `exposures`.
 Flip largest_flip(const Image& image, const Image& reference, const std::vector<double>& exposures,
                   const std::function<double(double radiance)>& screen) {
@@ -207,7 +205,7 @@ Flip largest_flip(const Image& image, const Image& reference, const std::vector<
     Flip result{std::vector<float>(image.rgb.size(), 0.0f)};
     std::vector<bool> counts;
     for (std::size_t i = 0; i < image.rgb.size(); ++i)
-        counts.push_back(finite(image.rgb[i]) && finite(reference.rgb[i]));
+        counts.push_back(is_finite(image.rgb[i]) && is_finite(reference.rgb[i]));
     for (const double exposure : exposures) {
         Plane planes[2];
         const Image* pictures[] = {&image, &reference};
@@ -246,7 +244,7 @@ double aces_inverse(double y) {
 std::vector<double> flip_exposures(const Image& reference) {
     std::vector<double> luminances;
     for (const glm::vec3& pixel : reference.rgb) {
-        if (finite(pixel)) luminances.push_back(luminance(glm::max(pixel, 0.0f)));
+        if (is_finite(pixel)) luminances.push_back(luminance(glm::max(pixel, 0.0f)));
     }
     if (luminances.empty()) return {0.0};
     std::ranges::sort(luminances);

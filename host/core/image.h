@@ -1,6 +1,7 @@
 #pragma once
 // A picture in memory: linear Rec. 709 radiance, first row on top.
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -24,6 +25,11 @@ struct Image {
     const glm::vec3& at(std::uint32_t x, std::uint32_t y) const { return rgb[std::size_t(y) * extent.width + x]; }
     bool operator==(const Image&) const = default;
 };
+
+/// Whether all channels are numbers.
+inline bool is_finite(const glm::vec3& rgb) {
+    return std::isfinite(rgb.r) && std::isfinite(rgb.g) && std::isfinite(rgb.b);
+}
 
 /// rgb [height x width], 8-bit sRGB, row-major, first row on top: what a screen takes.
 struct Bitmap {

@@ -15,10 +15,6 @@ namespace {
 
 constexpr std::size_t trimmed_one_in = 1000;
 
-bool finite(const glm::vec3& pixel) {
-    return std::isfinite(pixel.r) && std::isfinite(pixel.g) && std::isfinite(pixel.b);
-}
-
 /// Mean of the pixels' values, and without the largest. values [pixels], reordered.
 Measure measure(std::vector<double> values) {
     const auto mean = [&](std::size_t count) {
@@ -48,8 +44,8 @@ Comparison compare(const Image& image, const Image& reference) {
     std::vector<double> squares, relatives, ratios, levels;  // [pixels compared] means over the channels
     for (std::vector<double>* values : {&squares, &relatives, &ratios, &levels}) values->reserve(image.rgb.size());
     for (std::size_t i = 0; i < image.rgb.size(); ++i) {
-        const bool image_finite = finite(image.rgb[i]);
-        const bool reference_finite = finite(reference.rgb[i]);
+        const bool image_finite = is_finite(image.rgb[i]);
+        const bool reference_finite = is_finite(reference.rgb[i]);
         result.image_non_finite += !image_finite;
         result.reference_non_finite += !reference_finite;
         if (!image_finite || !reference_finite) continue;

@@ -276,8 +276,8 @@ std::vector<BvhBox> boxes_in_frame(const std::vector<SceneBox>& boxes, const std
     return in_frame;
 }
 
-/// Everything that has a place: triangles, instances and the trees over them.
-void add_geometry(const Scene& scene, const std::vector<SurfaceTraits>& traits, FlatScene& flat) {
+/// Everything that has a place: triangles, instances and the trees over them. Returns whether solids touch.
+bool add_geometry(const Scene& scene, const std::vector<SurfaceTraits>& traits, FlatScene& flat) {
     const TriangleRange world = world_triangles(scene);
     const std::vector<SceneBox> boxes = instance_boxes(scene);
     SceneBox whole = box_of(scene, world);
@@ -343,7 +343,6 @@ void add_geometry(const Scene& scene, const std::vector<SurfaceTraits>& traits, 
         flat.area += areas[mesh] * area_of(std::span(flat.triangles).subspan(first));
     }
     flat.bvh.stack += stack;
-    flat.nested = touch ? "solids that touch" : nested_solids(scene, traits);
     for (std::size_t k = 0; k < kept.size(); ++k) {
         const MeshToScene& placement = placements[kept[k]];
         flat.instances.push_back(placement.to_scene());
@@ -353,21 +352,21 @@ void add_geometry(const Scene& scene, const std::vector<SurfaceTraits>& traits, 
         entry.index = node.exponents;
         node = std::bit_cast<gpu::BvhNode>(entry);
     }
+    return touch;
 }
 
 /// Whether a camera stands within closed surfaces that face away from it, as in a box of which it is to see the inside:
 /// it would see nothing of it if it did not see backs. O(triangles); instances are left out.
 bool is_enclosed(const Scene& scene, const std::vector<SurfaceTraits>& traits) {
+    if (std::ranges::none_of(traits, &SurfaceTraits::culled)) return false;
     return std::ranges::any_of(scene.cameras, [&](const Camera& camera) {
         const glm::dvec3 eye(camera.to_world[3]);
         const double turns = tbb::parallel_deterministic_reduce(
             tbb::blocked_range<std::uint32_t>(0, world_triangles(scene).last, 1u << 14), 0.0,
             [&](const tbb::blocked_range<std::uint32_t>& range, double sum) {
                 for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
-                    const Triangle& t = scene.triangles[i];
-                    if (!traits[t.material].culled) continue;
-                    const auto at = [&](int corner) { return glm::dvec3(scene.positions[t.vertex[corner]]); };
-                    sum += share_of_directions({at(0), at(1), at(2)}, eye);
+                    if (!traits[scene.triangles[i].material].culled) continue;
+                    sum += share_of_directions(corners_of(scene, i), eye);
                 }
                 return sum;
             },
@@ -376,9 +375,12 @@ bool is_enclosed(const Scene& scene, const std::vector<SurfaceTraits>& traits) {
     });
 }
 
-/// Which of nested solids counts, and what is needed to tell in which of them the eye is.
-void add_solids(const Scene& scene, const std::vector<SurfaceTraits>& traits, FlatScene& flat) {
-    const std::vector<std::uint32_t> priorities = priorities_of(scene, traits);
+/// Whether solids are nested and, where they are, which of them counts, and what is needed to tell in which the eye is.
+void add_solids(const Scene& scene, const std::vector<SurfaceTraits>& traits, bool touch, FlatScene& flat) {
+    const std::vector<Shell> shells = solid_shells(scene, traits);
+    flat.nested = touch ? "solids that touch" : nested_solids(scene, shells);
+    if (flat.nested.empty()) return;
+    const std::vector<std::uint32_t> priorities = priorities_of(scene, traits, shells);
     for (std::size_t i = 0; i < priorities.size(); ++i) flat.materials[i].priority = priorities[i];
     for (std::uint32_t i = 0; i < world_triangles(scene).last; ++i) {
         const Triangle& triangle = scene.triangles[i];
@@ -452,11 +454,11 @@ FlatScene flatten(const Scene& scene) {
     if (is_enclosed(scene, traits)) {
         for (SurfaceTraits& of_material : traits) of_material.culled = false;
     }
-    add_geometry(scene, traits, flat);
+    const bool touch = add_geometry(scene, traits, flat);
     for (std::size_t i = 0; i < traits.size(); ++i) {
         flat.materials.push_back(surface_of(scene.materials[i], traits[i], flat.frame.scale, textures));
     }
-    if (!flat.nested.empty()) add_solids(scene, traits, flat);
+    add_solids(scene, traits, touch, flat);
     flat.textures = textures.lookups();
     flat.images = textures.take_texels();
     add_lights(scene, flat);

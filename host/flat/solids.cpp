@@ -44,11 +44,6 @@ Box box_of(const Triangle3& p) {
     return box_of(glm::min(p[0], glm::min(p[1], p[2])), glm::max(p[0], glm::max(p[1], p[2])));
 }
 
-Triangle3 corners_of(const Scene& scene, std::uint32_t triangle) {
-    const auto& v = scene.triangles[triangle].vertex;
-    return {glm::dvec3(scene.positions[v[0]]), glm::dvec3(scene.positions[v[1]]), glm::dvec3(scene.positions[v[2]])};
-}
-
 /// Six times the signed volume of the tetrahedron.
 double volume(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d) {
     return glm::dot(b - a, glm::cross(c - a, d - a));
@@ -142,9 +137,43 @@ private:
     std::size_t work_ = 0;
 };
 
-/// The shells of solid glass, in the order of their first triangles. Those of a material are looked at by themselves
-/// where they are whole, for bodies that touch by their edges are not one; the others together, as a body may have
-/// several materials.
+std::uint32_t material_of(const Scene& scene, const Shell& shell) {
+    return scene.triangles[shell.triangles.front()].material;
+}
+
+/// The first instance of a solid whose box meets that of another solid; none: nothing does.
+std::optional<std::pair<std::uint32_t, std::uint32_t>> nested_instances(const Scene& scene,
+                                                                        std::span<const Shell> shells) {
+    std::vector<std::uint32_t> solid(scene.meshes.size(), std::uint32_t(scene.materials.size()));
+    bool is_shared = false;     // some solid
+    std::vector<Entry> bodies;  // by material
+    for (const Shell& shell : shells) {
+        if (const auto mesh = mesh_of(scene, shell.triangles.front())) {
+            solid[*mesh] = material_of(scene, shell);
+            is_shared = true;
+        } else {
+            bodies.emplace_back(box_of(shell.low, shell.high), material_of(scene, shell));
+        }
+    }
+    if (!is_shared) return std::nullopt;
+    const std::size_t first = bodies.size();
+    const std::vector<SceneBox> boxes = instance_boxes(scene);
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const std::uint32_t material = solid[scene.instances[i].mesh];
+        if (material < scene.materials.size()) bodies.emplace_back(box_of(boxes[i].low, boxes[i].high), material);
+    }
+    const Tree tree(bodies);
+    for (std::size_t i = first; i < bodies.size(); ++i) {
+        std::size_t met = 0;
+        for (auto entry = tree.qbegin(geometry::index::intersects(bodies[i].first)); entry != tree.qend(); ++entry) {
+            if (++met > 1) return std::pair(bodies[i].second, entry->second);  // itself is one
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
 std::vector<Shell> solid_shells(const Scene& scene, const std::vector<SurfaceTraits>& traits) {
     std::vector<std::vector<std::uint32_t>> triangles(scene.materials.size());
     for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
@@ -168,43 +197,7 @@ std::vector<Shell> solid_shells(const Scene& scene, const std::vector<SurfaceTra
     return shells;
 }
 
-std::uint32_t material_of(const Scene& scene, const Shell& shell) {
-    return scene.triangles[shell.triangles.front()].material;
-}
-
-/// The first instance of a solid whose box meets that of another solid; none: nothing does.
-std::optional<std::pair<std::uint32_t, std::uint32_t>> nested_instances(const Scene& scene,
-                                                                        std::span<const Shell> shells) {
-    std::vector<std::uint32_t> solid(scene.meshes.size(), std::uint32_t(scene.materials.size()));
-    std::vector<Entry> bodies;  // by material
-    for (const Shell& shell : shells) {
-        if (const auto mesh = mesh_of(scene, shell.triangles.front())) {
-            solid[*mesh] = material_of(scene, shell);
-        } else {
-            bodies.emplace_back(box_of(shell.low, shell.high), material_of(scene, shell));
-        }
-    }
-    if (scene.instances.empty()) return std::nullopt;
-    const std::size_t first = bodies.size();
-    const std::vector<SceneBox> boxes = instance_boxes(scene);
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-        const std::uint32_t material = solid[scene.instances[i].mesh];
-        if (material < scene.materials.size()) bodies.emplace_back(box_of(boxes[i].low, boxes[i].high), material);
-    }
-    const Tree tree(bodies);
-    for (std::size_t i = first; i < bodies.size(); ++i) {
-        std::size_t met = 0;
-        for (auto entry = tree.qbegin(geometry::index::intersects(bodies[i].first)); entry != tree.qend(); ++entry) {
-            if (++met > 1) return std::pair(bodies[i].second, entry->second);  // itself is one
-        }
-    }
-    return std::nullopt;
-}
-
-}  // namespace
-
-std::string nested_solids(const Scene& scene, const std::vector<SurfaceTraits>& traits) {
-    const std::vector<Shell> shells = solid_shells(scene, traits);
+std::string nested_solids(const Scene& scene, std::span<const Shell> shells) {
     const auto named = [&](std::uint32_t a, std::uint32_t b) {
         return fmt::format("material '{}' with '{}'", scene.materials[a].name, scene.materials[b].name);
     };
@@ -215,14 +208,15 @@ std::string nested_solids(const Scene& scene, const std::vector<SurfaceTraits>& 
         for (last = first; last < shells.size(); ++last) {
             if (mesh_of(scene, shells[last].triangles.front()) != mesh) break;
         }
-        if (const auto pair = Space(scene, std::span(shells).subspan(first, last - first)).nested()) {
+        if (const auto pair = Space(scene, shells.subspan(first, last - first)).nested()) {
             return named(material_of(scene, *pair->first), material_of(scene, *pair->second));
         }
     }
     return {};
 }
 
-std::vector<std::uint32_t> priorities_of(const Scene& scene, const std::vector<SurfaceTraits>& traits) {
+std::vector<std::uint32_t> priorities_of(const Scene& scene, const std::vector<SurfaceTraits>& traits,
+                                         std::span<const Shell> shells) {
     std::vector<double> scales(scene.meshes.size()), shown(scene.meshes.size());
     for (const Instance& instance : scene.instances) {
         scales[instance.mesh] += std::abs(glm::determinant(glm::dmat3(instance.to_world)));
@@ -232,7 +226,6 @@ std::vector<std::uint32_t> priorities_of(const Scene& scene, const std::vector<S
         double volume = 0.0;  // m^3, cavities taken off
         double count = 0.0;
     };
-    const std::vector<Shell> shells = solid_shells(scene, traits);
     // Of each material the least one with which it has bodies in common, by some way.
     std::vector<std::uint32_t> least(scene.materials.size());
     std::iota(least.begin(), least.end(), 0u);

@@ -58,7 +58,7 @@ void mend(Image& image, const fs::path& file, std::vector<std::string>& warnings
     std::string first;
     for (std::size_t i = 0; i < image.rgb.size(); ++i) {
         glm::vec3& v = image.rgb[i];
-        if (!(std::isfinite(v.r) && std::isfinite(v.g) && std::isfinite(v.b))) {
+        if (!is_finite(v)) {
             throw Error(ExitCode::bad_scene,
                         fmt::format("{}: {}; radiance must be finite", file.string(), shown(image, i)));
         }

@@ -12,11 +12,9 @@
 namespace vkcppm {
 namespace {
 
-bool finite(const glm::vec3& pixel) { return std::isfinite(pixel.r + pixel.g + pixel.b); }
-
 void compare_pixels(Check& result, const Image& image, const Image& reference) {
     for (std::size_t i = 0; i < image.rgb.size(); ++i) {
-        const bool x_finite = finite(image.rgb[i]), r_finite = finite(reference.rgb[i]);
+        const bool x_finite = is_finite(image.rgb[i]), r_finite = is_finite(reference.rgb[i]);
         double squared = x_finite == r_finite ? 0.0 : INFINITY;
         for (int c = 0; x_finite && r_finite && c < 3; ++c) {
             const double x = image.rgb[i][c], r = reference.rgb[i][c];

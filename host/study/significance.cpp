@@ -55,8 +55,6 @@ double chance(double sigma, double freedom) {
 /// number (Sidak 1967).
 double any_of_level(double level, double count) { return -std::expm1(count * std::log1p(-level)); }
 
-bool finite(const glm::vec3& pixel) { return std::isfinite(pixel.r + pixel.g + pixel.b); }
-
 /// Both pictures at one scale.
 struct Side {
     std::uint32_t side = 1;
@@ -67,7 +65,7 @@ struct Side {
 Side pixel_side(const NoisyPicture& image, const NoisyPicture& reference) {
     Side pixels;
     for (std::size_t i = 0; i < image.mean.rgb.size(); ++i) {
-        const bool compared = finite(image.mean.rgb[i]) && finite(reference.mean.rgb[i]) &&
+        const bool compared = is_finite(image.mean.rgb[i]) && is_finite(reference.mean.rgb[i]) &&
                               std::isfinite(image.standard_error[i]) && std::isfinite(reference.standard_error[i]);
         pixels.count.push_back(compared ? 1.0 : 0.0);
         pixels.pairs.push_back(compared ? Pair{image.mean.rgb[i], reference.mean.rgb[i], image.standard_error[i],

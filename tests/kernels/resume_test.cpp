@@ -47,9 +47,7 @@ class Resume : public GpuTest, public testing::WithParamInterface<std::string> {
 
 TEST_P(Resume, SmallStepBudgetsGiveTheSameBits) {
     Rig whole(room(), settings_of(GetParam())), cut(room(), settings_of(GetParam()));
-    gpu::Params params = cut.integrator.params();
-    params.step_budget = 150;
-    cut.integrator.set_params(params);
+    cut.set_step_budget(150);
     whole.integrator.run(iterations);
     cut.integrator.run(iterations);
     // A pass of the whole render may run again because the photon buffer grew, but in one round each time.
@@ -106,9 +104,7 @@ TEST_F(Determinism, SmallStepBudgetsGiveTheSameBitsInInstances) {
     ASSERT_EQ(whole.flat.instances.size(), 2u);
     whole.integrator.run(iterations);
     Rig cut(scene, settings);
-    gpu::Params params = cut.integrator.params();
-    params.step_budget = 150;
-    cut.integrator.set_params(params);
+    cut.set_step_budget(150);
     cut.integrator.run(iterations);
     for (const Pass pass : {Pass::eye, Pass::photon, Pass::gather}) {
         EXPECT_GT(calls(cut, pass), calls(whole, pass)) << "the pass was not cut";
@@ -138,9 +134,7 @@ TEST_F(Determinism, SmallStepBudgetsGiveTheSameBitsThroughSheetsAndInNestedSolid
     whole.integrator.run(iterations);
     for (const std::uint32_t budget : {150u, 177u}) {
         Rig cut(scene, settings);
-        gpu::Params params = cut.integrator.params();
-        params.step_budget = budget;
-        cut.integrator.set_params(params);
+        cut.set_step_budget(budget);
         cut.integrator.run(iterations);
         for (const Pass pass : {Pass::eye, Pass::photon}) EXPECT_GT(calls(cut, pass), calls(whole, pass)) << "not cut";
         expect_same_picture(cut.integrator.resolve(), whole.integrator.resolve(), fmt::format("budget {}", budget));
@@ -157,9 +151,7 @@ TEST_F(Determinism, SmallStepBudgetsGiveTheSameBitsWhereLightsAreAskedFor) {
         whole.integrator.run(iterations);
         for (const std::uint32_t budget : {120u, 132u}) {
             Rig cut(scene, settings);
-            gpu::Params params = cut.integrator.params();
-            params.step_budget = budget;
-            cut.integrator.set_params(params);
+            cut.set_step_budget(budget);
             cut.integrator.run(iterations);
             EXPECT_GT(calls(cut, Pass::eye), calls(whole, Pass::eye)) << "the eye pass was not cut";
             expect_same_picture(cut.integrator.resolve(), whole.integrator.resolve(),

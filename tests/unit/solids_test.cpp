@@ -25,7 +25,12 @@ Scene two_glasses() {
     return scene;
 }
 
-std::string nested(const Scene& scene) { return nested_solids(scene, traits_of(scene)); }
+std::string nested(const Scene& scene) { return nested_solids(scene, solid_shells(scene, traits_of(scene))); }
+
+std::vector<std::uint32_t> priorities(const Scene& scene) {
+    const std::vector<SurfaceTraits> traits = traits_of(scene);
+    return priorities_of(scene, traits, solid_shells(scene, traits));
+}
 
 TEST(Solids, AreNestedWhereOneIsInAnotherOrTheyCross) {
     const auto with = [](const glm::dvec3& low, const glm::dvec3& high) {
@@ -71,16 +76,16 @@ TEST(Solids, TheSmallerCounts) {
     add_box(scene, {0.1, 0.1, 0.1}, {0.9, 0.9, 0.9}, outer, true);         // 0.488 m^3 of glass
     add_box(scene, {0.05, 0.05, 0.05}, {0.95, 0.95, 0.95}, inner, false);  // 0.729 m^3 of water
     add_material(scene, lambert(glm::vec3(0.5f)));
-    EXPECT_EQ(priorities_of(scene, traits_of(scene)), (std::vector<std::uint32_t>{2, 1, 0}));
+    EXPECT_EQ(priorities(scene), (std::vector<std::uint32_t>{2, 1, 0}));
     add_box(scene, {0.3, 0.3, 0.3}, {0.4, 0.4, 0.4}, inner, false);  // 0.365 m^3 in the mean
-    EXPECT_EQ(priorities_of(scene, traits_of(scene)), (std::vector<std::uint32_t>{1, 2, 0}));
+    EXPECT_EQ(priorities(scene), (std::vector<std::uint32_t>{1, 2, 0}));
 }
 
 TEST(Solids, ThatTouchByTheirEdgesAreTwo) {
     Scene scene = two_glasses();
     add_box(scene, {0, 0, 0}, {1, 1, 1}, outer, false);
     add_box(scene, {0, 1, 0}, {1, 1.5, 1}, inner, false);
-    EXPECT_EQ(priorities_of(scene, traits_of(scene)), (std::vector<std::uint32_t>{1, 2}));
+    EXPECT_EQ(priorities(scene), (std::vector<std::uint32_t>{1, 2}));
 }
 
 TEST(Solids, OfOneBodyAreOne) {
@@ -89,7 +94,7 @@ TEST(Solids, OfOneBodyAreOne) {
     add_box(scene, {0.2, 0.2, 0.2}, {0.7, 0.7, 0.7}, inner, false);
     const std::uint32_t lid = add_material(scene, glass(1.33f));
     scene.triangles.back().material = scene.triangles[scene.triangles.size() - 2].material = lid;
-    EXPECT_EQ(priorities_of(scene, traits_of(scene)), (std::vector<std::uint32_t>{1, 2, 2}));
+    EXPECT_EQ(priorities(scene), (std::vector<std::uint32_t>{1, 2, 2}));
 }
 
 TEST(Solids, AreKnownToThePointInThem) {

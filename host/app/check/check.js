@@ -14,14 +14,11 @@ function readAddress() {
   state.crop = cropOf(chosen.get('crop'));
 }
 
-let written = null; // the address that this page gave itself last
-
 function choose(change) {
   Object.assign(state, change);
   draw();
   const {x, y, size} = state.crop;
-  written = `#view=${state.view}&crop=${x},${y},${size}`;
-  if (location.hash !== written) location.replace(written);
+  writeAddress(`#view=${state.view}&crop=${x},${y},${size}`);
 }
 
 function row(cell, texts) {
@@ -156,8 +153,4 @@ drawPlaces();
 buildSlider();
 buildTiles();
 draw();
-addEventListener('hashchange', () => {
-  if (location.hash === written) return;
-  readAddress();
-  draw();
-});
+followAddress(readAddress, draw);

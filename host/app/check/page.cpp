@@ -74,6 +74,7 @@ std::string check_page(const Json& json, const Check& check, const Image& image,
     const std::pair<std::string_view, std::string> parts[] = {
         {"@title@", escaped(json["image"].get<std::string>())},
         {"@style@", std::string(page_style())},
+        {"@crops@", std::string(page_crops())},
         {"@check@", script_text(told)},
         {"@pictures@", script_text(pictures)},
         {"@script@", std::string(page_script()) + std::string(script)},

@@ -43,3 +43,21 @@ function digits(value) {
 }
 
 const signed = (value) => value.toFixed(2).replace('-', '−');
+
+// ---- What is chosen stands in the address
+
+let written = null; // the address that the page gave itself last
+
+function writeAddress(hash) {
+  written = hash;
+  if (location.hash !== hash) location.replace(hash);
+}
+
+/** Reads and draws again whenever somebody else changes the address. */
+function followAddress(read, draw) {
+  addEventListener('hashchange', () => {
+    if (location.hash === written) return;
+    read();
+    draw();
+  });
+}

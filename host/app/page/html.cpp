@@ -14,6 +14,9 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view style =
 #include "page.css.inc"
     ;
+constexpr std::string_view crops =
+#include "crops.html.inc"
+    ;
 constexpr std::string_view scripts[] = {
 #include "common.js.inc"
     ,
@@ -49,6 +52,8 @@ std::string escaped(std::string_view text) {
 }
 
 std::string_view page_style() { return style; }
+
+std::string_view page_crops() { return crops; }
 
 std::string_view page_script() {
     static const std::string script = std::string(scripts[0]) + std::string(scripts[1]);

@@ -34,6 +34,9 @@ std::string_view page_style();
 /// The script that comes before a page's own: elements, numbers, tiles with a crop.
 std::string_view page_script();
 
+/// The end of a section with tiles: what chooses the crop of crops.js, and the tiles.
+std::string_view page_crops();
+
 /// `page` with texts in place of marks, {mark, text} in the order in which the page has them. Asserts that it has.
 std::string filled(std::string_view page, std::span<const std::pair<std::string_view, std::string>> parts);
 

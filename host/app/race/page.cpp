@@ -49,6 +49,7 @@ std::string race_page(const Json& race, const RacePictures& pictures) {
     const std::pair<std::string_view, std::string> parts[] = {
         {"@title@", escaped(race["scene"]["file"].get<std::string>())},
         {"@style@", std::string(page_style())},
+        {"@crops@", std::string(page_crops())},
         {"@race@", script_text(drawn)},
         {"@pictures@", script_text(pictures_json(pictures))},
         {"@script@", script},

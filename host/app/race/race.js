@@ -40,22 +40,18 @@ function readAddress() {
   state.hidden = new Set(entrants.map((entrant) => entrant.name).filter((name) => hidden.includes(name)));
 }
 
-function writeAddress() {
+function writeChoice() {
   const {x, y, size} = state.crop;
   const hide = state.hidden.size ? `&hide=${[...state.hidden].map(encodeURIComponent).join(',')}` : '';
-  const hash = `#metric=${state.metric}&view=${state.view}&crop=${x},${y},${size}${hide}`;
-  written = hash;
-  if (location.hash !== hash) location.replace(hash);
+  writeAddress(`#metric=${state.metric}&view=${state.view}&crop=${x},${y},${size}${hide}`);
 }
-
-let written = null; // the address that this page gave itself last
 
 function choose(change) {
   Object.assign(state, change);
   const pictures = 'crop' in change || 'view' in change;
   if (pictures) drawTiles(chosenMetric());
   else draw();
-  writeAddress();
+  writeChoice();
 }
 
 const chosenMetric = () => race.metrics.find((metric) => metric.name === state.metric);
@@ -256,11 +252,7 @@ drawNotes();
 drawCost();
 buildTiles();
 draw();
-addEventListener('hashchange', () => {
-  if (location.hash === written) return;
-  readAddress();
-  draw();
-});
+followAddress(readAddress, draw);
 let lastWidth = innerWidth;
 addEventListener('resize', () => {
   if (innerWidth === lastWidth) return;

@@ -113,11 +113,6 @@ double sixfold_volume(const std::array<glm::dvec3, 3>& p, const glm::dvec3& poin
     return glm::dot(p[0] - point, glm::cross(p[1] - point, p[2] - point));
 }
 
-std::array<glm::dvec3, 3> corners_of(const Scene& scene, std::uint32_t triangle) {
-    const auto& vertex = scene.triangles[triangle].vertex;
-    return {scene.positions[vertex[0]], scene.positions[vertex[1]], scene.positions[vertex[2]]};
-}
-
 void measure(Shell& shell, const Scene& scene) {
     const glm::dvec3 origin = corners_of(scene, shell.triangles.front())[0];
     shell.low = shell.high = origin;
@@ -173,6 +168,11 @@ std::vector<Shell> find_shells(const Scene& scene, std::span<const std::uint32_t
     }
     for (Shell& shell : shells) measure(shell, scene);
     return shells;
+}
+
+std::array<glm::dvec3, 3> corners_of(const Scene& scene, std::uint32_t triangle) {
+    const auto& vertex = scene.triangles[triangle].vertex;
+    return {scene.positions[vertex[0]], scene.positions[vertex[1]], scene.positions[vertex[2]]};
 }
 
 double share_of_directions(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& point) {

@@ -30,6 +30,9 @@ struct Shell {
 /// belong to none.
 std::vector<Shell> find_shells(const Scene& scene, std::span<const std::uint32_t> triangles);
 
+/// The corners of a triangle of the scene, m.
+std::array<glm::dvec3, 3> corners_of(const Scene& scene, std::uint32_t triangle);
+
 /// The share of all directions in which the triangle is seen from the point; negative from its front (van Oosterom and
 /// Strackee 1983). Of those of a closed surface the sum is how often it winds around the point.
 double share_of_directions(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& point);

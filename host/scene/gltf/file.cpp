@@ -1,12 +1,12 @@
 #include "scene/gltf/file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstring>
 #include <map>
 #include <optional>
 #include <span>
 
+#include "core/ending.h"
 #include "core/fnv1a.h"
 #include "scene/bad_scene.h"
 #include "scene/gltf/meshopt.h"
@@ -135,8 +135,7 @@ void check_foreign(std::span<const std::uint8_t> bytes, const std::filesystem::p
         {".abc", "Ogawa", "Alembic"},
         {".3ds", "", "3DS"},
     };
-    std::string ending = path.extension().string();
-    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    const std::string ending = ending_of(path);
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     const bool begins_like_gltf = text.starts_with("glTF") || text.substr(0, 16).find('{') != text.npos;
     for (const Format& format : formats) {

@@ -45,6 +45,12 @@ struct Rig {
         for (std::uint32_t p = 0; p < params.photons; ++p) paths.push_back({slots[p], offsets[p + 1] - offsets[p]});
         return paths;
     }
+    /// Of one invocation: what needs more steps goes on in further rounds.
+    void set_step_budget(std::uint32_t steps) {
+        gpu::Params params = integrator.params();
+        params.step_budget = steps;
+        integrator.set_params(params);
+    }
     Report report() const {
         Report told;
         integrator.fill(told);
