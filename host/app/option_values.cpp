@@ -135,6 +135,29 @@ StopAt parse_stop_at(const std::string& option, const std::string& text) {
     return result;
 }
 
+Target parse_target(const std::string& option, const std::string& text) {
+    const std::size_t equals = text.find('=');
+    const std::string name = text.substr(0, equals);
+    std::string names;
+    for (const EstimatedMeasure& measure : estimated_measures()) {
+        if (equals != std::string::npos && measure.name == name) {
+            const double value = parse_share(option, text.substr(equals + 1));
+            if (!(value > 0.0)) refuse(option, text, "a measure and a number greater than 0");
+            return {.measure = &measure, .value = value};
+        }
+        names += fmt::format("{}{}", names.empty() ? "" : ", ", measure.name);
+    }
+    refuse(option, text, fmt::format("MEASURE=VALUE of {}, such as relmse_trimmed=0.001 or noise=2%", names));
+}
+
+double parse_confidence(const std::string& option, const std::string& text) {
+    std::string_view rest = text;
+    double percent = 0.0;
+    const bool is_number = take_number(rest, percent) && (rest.empty() || rest == "%");
+    if (!is_number || !(percent >= 50.0 && percent < 100.0)) refuse(option, text, "percent from 50 to below 100");
+    return percent / 100.0;
+}
+
 Bound parse_bound(const std::string& option, const std::string& text) {
     const auto [name, value] = parse_assignment(option, text, "flip=0.05");
     if (!is_measure(name))

@@ -9,6 +9,7 @@
 #include "core/image.h"
 #include "core/metrics.h"
 #include "io/png.h"
+#include "render/error_estimate.h"
 #include "study/check.h"
 
 namespace vkcppm {
@@ -38,6 +39,8 @@ Bound parse_bound(const std::string& option, const std::string& text);          
 Extent parse_size(const std::string& option, const std::string& text);                     // 512x384
 double parse_seconds(const std::string& option, const std::string& text);        // of 90, 90s, 2m, 1.5h or 500ms; > 0
 StopAt parse_stop_at(const std::string& option, const std::string& text);        // relmse_trimmed=0.0035
+Target parse_target(const std::string& option, const std::string& text);         // relmse=0.001, noise=2%
+double parse_confidence(const std::string& option, const std::string& text);     // 90 or 90 % as 0.9
 ThinGlass parse_thin_glass(const std::string& option, const std::string& text);  // thin or solid
 
 }  // namespace vkcppm

@@ -224,6 +224,14 @@ void declare(CLI::App& app, RenderOptions& options) {
         "one of " +
             metric_names())
         ->needs("--reference");
+    add(app, "--target", "MEASURE=VALUE", options.target, parse_target,
+        "Stop where the render's own estimate of its error, noise and bias, is surely at most this, such as\n"
+        "relmse_trimmed=0.001; or its noise alone, the median relative standard error of pixels: noise=2%. As\n"
+        "--error; --iterations and --time bound it (default then: no bound of iterations)");
+    add(app, "--confidence", "PERCENT", options.confidence, parse_confidence,
+        fmt::format("Of the estimate's upper bound, which --target looks at (default: {:g})",
+                    100.0 * options.confidence))
+        ->needs("--target");
     app.add_option(
            "--checkpoint", options.checkpoint,
            "Keep the state of the render in this file, which is replaced whole, and once more at the end; what\n"
@@ -254,7 +262,12 @@ void finish(const CLI::App& app, const Words&, RenderOptions& options) {
     if (!options.checkpoint) options.checkpoint = options.resume;
     if (!options.checkpoint && app.count("--checkpoint-every") > 0)
         throw Error(ExitCode::usage, "--checkpoint-every needs --checkpoint or --resume");
-    if (app.count("--iterations") == 0 && options.settings.seconds) options.settings.iterations = unbounded_iterations;
+    if (app.count("--iterations") == 0 && (options.settings.seconds || options.target))
+        options.settings.iterations = unbounded_iterations;
+    if (options.target) {
+        options.target->confidence = options.confidence;
+        options.settings.error = true;
+    }
 }
 
 void declare(CLI::App& app, RaceOptions& options) {

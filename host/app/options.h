@@ -49,6 +49,8 @@ struct RenderOptions {
     std::optional<std::filesystem::path> stats;       // JSON
     std::optional<std::filesystem::path> reference;   // EXR that the render is measured against
     std::optional<StopAt> stop_at;                    // only with a reference
+    std::optional<Target> target;                     // then settings.error
+    double confidence = Target().confidence;          // for the target
     std::optional<std::filesystem::path> resume;      // checkpoint to go on from
     std::optional<std::filesystem::path> checkpoint;  // where checkpoints go: `resume` where no other is named
     double checkpoint_every = 60.0;                   // s

@@ -5,11 +5,20 @@
 
 #include <fmt/format.h>
 
+#include "app/options.h"
+
 namespace vkcppm {
 namespace {
 
 constexpr double terminal_interval = 0.1;  // s
 constexpr double plain_interval = 10.0;    // s
+
+/// ", relmse_trimmed about 0.0034": what a render thinks of itself.
+std::string estimate_text(const Progress& progress) {
+    if (!progress.estimate) return "";
+    const ExpectedRelmse& relmse = progress.estimate->relmse_trimmed;
+    return fmt::format(", relmse_trimmed about {:.2g}", relmse.error.value);
+}
 
 /// ", relmse 0.0123", and after how many iterations where there have been more since.
 std::string error_text(const Progress& progress) {
@@ -34,18 +43,21 @@ std::string duration_text(double seconds) {
 }
 
 std::string progress_text(const Progress& progress, std::optional<double> time_limit) {
+    const bool counted = progress.iterations_total < unbounded_iterations;
     const double of_iterations = double(progress.iterations_done) / double(progress.iterations_total);
     const double of_time = time_limit ? progress.wall_seconds / *time_limit : 0.0;
     const double done = std::min(std::max(of_iterations, of_time), 1.0);
-    // The bound on iterations says nothing where the time decides.
-    std::string text = of_time > of_iterations
+    // The bound on iterations says nothing where the time decides, or an error.
+    std::string text = of_time > of_iterations || !counted
                            ? fmt::format("{} iterations", progress.iterations_done)
                            : fmt::format("{}/{} iterations", progress.iterations_done, progress.iterations_total);
-    text += fmt::format(" ({:.0f} %)", std::floor(100.0 * done));
-    if (done > 0.0) {
-        text += fmt::format(", {} left", duration_text(progress.wall_seconds * (1.0 - done) / done));
+    if (counted || time_limit) {
+        text += fmt::format(" ({:.0f} %)", std::floor(100.0 * done));
+        if (done > 0.0) {
+            text += fmt::format(", {} left", duration_text(progress.wall_seconds * (1.0 - done) / done));
+        }
     }
-    return text + error_text(progress);
+    return text + error_text(progress) + estimate_text(progress);
 }
 
 ProgressLine::ProgressLine(std::FILE* stream, bool terminal, std::optional<double> time_limit)
@@ -68,8 +80,8 @@ void ProgressLine::update(double wall_seconds, const std::string& text) {
 }
 
 void ProgressLine::finish(const Progress& progress) {
-    finish_with(fmt::format("{} iterations in {:.1f} s{}", progress.iterations_done, progress.wall_seconds,
-                            error_text(progress)));
+    finish_with(fmt::format("{} iterations in {:.1f} s{}{}", progress.iterations_done, progress.wall_seconds,
+                            error_text(progress), estimate_text(progress)));
 }
 
 void ProgressLine::finish_with(const std::string& text) {

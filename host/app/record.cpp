@@ -93,7 +93,29 @@ ExrAttributes exr_attributes(const SceneOptions& options, const Scene& scene, co
     Json json = settings_json(rendering.settings);
     json["iterations_done"] = rendering.report.iterations;
     json["emitted_photons"] = rendering.report.emitted_paths;
+    if (rendering.estimate) {
+        json.update(estimate_json(*rendering.estimate));
+        json["batches"] = ERROR_GROUPS;  // that StdErr is the spread of
+    }
     return attributes_of(std::move(json), options, scene, rendering.report);
+}
+
+Json estimate_json(const ErrorEstimate& estimate) {
+    Json json;
+    const auto add = [&](const std::string& name, const Expected& expected) {
+        json["expected_" + name] = expected.value;
+        json["expected_" + name + "_error"] = expected.standard_error;
+    };
+    const auto add_parts = [&](const std::string& name, const ExpectedRelmse& relmse) {
+        add(name, relmse.error);
+        json["expected_" + name + "_noise"] = relmse.noise;
+        json["expected_" + name + "_bias"] = relmse.bias;
+    };
+    add_parts("relmse", estimate.relmse);
+    add_parts("relmse_trimmed", estimate.relmse_trimmed);
+    add("noise", estimate.noise);
+    json["rare_light"] = estimate.rare;
+    return json;
 }
 
 bool reached(const StopAt& stop_at, const Rendering& rendering) {
@@ -137,6 +159,13 @@ std::string stats_json(const RenderOptions& options, const Scene& scene, const R
     json["settings"] = settings_json(rendering.settings);
     json["warnings"] = warnings_json(scene, rendering.warnings);
     json.update(report_json(rendering.report));
+    if (rendering.estimate) json["estimate"] = estimate_json(*rendering.estimate);
+    if (options.target) {
+        json["target"] = {{"measure", options.target->measure->name},
+                          {"value", options.target->value},
+                          {"confidence", options.target->confidence},
+                          {"reached", is_met(*options.target, rendering.estimate)}};
+    }
     if (options.reference) {
         json["reference"] = options.reference->string();
         if (options.stop_at) {

@@ -29,6 +29,10 @@ nlohmann::ordered_json scene_json(const SceneOptions& options, const Scene& scen
 /// All that was warned of: about the scene, and while it was rendered.
 nlohmann::ordered_json warnings_json(const Scene& scene, const std::vector<std::string>& of_the_render);
 
+/// What a render thinks of its own error, by name: expected_<measure>, its standard error as ..._error, its parts
+/// ..._noise and ..._bias; rare_light.
+nlohmann::ordered_json estimate_json(const ErrorEstimate& estimate);
+
 /// What a run did: device, driver, totals, passes [{name, calls, device_seconds}] and, of a render, memory [{of, count,
 /// bytes_each, bytes}].
 nlohmann::ordered_json report_json(const Report& report);

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/record.h"
-#include "study/blocks.h"
+#include "core/blocks.h"
 
 namespace vkcppm {
 namespace {

@@ -56,6 +56,37 @@ void print_stop(const StopAt& stop_at, const Rendering& rendering, bool quiet) {
     }
 }
 
+/// Says what the render thinks of its own error.
+void print_estimate(const ErrorEstimate& estimate) {
+    const ExpectedRelmse& relmse = estimate.relmse_trimmed;
+    constexpr double confidence = 0.9;
+    print_message(
+        fmt::format("error of its own estimate: relmse_trimmed {:.3g} ({:.3g} noise, {:.3g} bias), at most {:.3g} by "
+                    "{:g} %; relmse "
+                    "{:.3g}; median noise of a pixel {:.2g} %",
+                    relmse.error.value, relmse.noise, relmse.bias, upper_bound(relmse.error, confidence),
+                    100.0 * confidence, estimate.relmse.error.value, 100.0 * estimate.noise.value));
+}
+
+/// Says whether the error to aim at was met.
+void print_target(const Target& target, const Rendering& rendering, bool quiet) {
+    const std::string wanted = fmt::format("--target {}={:g}", target.measure->name, target.value);
+    const std::uint64_t done = rendering.report.iterations;
+    if (!rendering.estimate) {
+        print_message(
+            fmt::format("warning: {} was not looked at: the first look is after {} iterations, and {} were done",
+                        wanted, 2 * least_estimated, done));
+        return;
+    }
+    const std::string bound = fmt::format("at most {:.3g} by {:g} % after {} iterations",
+                                          upper_bound(target, *rendering.estimate), 100.0 * target.confidence, done);
+    if (!is_met(target, rendering.estimate)) {
+        print_message(fmt::format("warning: {}: {} was not reached", bound, wanted));
+    } else if (!quiet) {
+        print_message(fmt::format("{}: {} was reached", bound, wanted));
+    }
+}
+
 /// Where checkpoints go. A disk or a memory that is full for a while costs no more than the checkpoints of that while:
 /// a failure is told, and the render goes on.
 class Keeper {
@@ -121,7 +152,8 @@ Rendering render_with_progress(const Scene& scene, const RenderOptions& options,
             if (!options.quiet) line.update(progress);
             return !interrupted();
         },
-        measuring, checkpointing, options.hash ? print_hash : OnPassHash());
+        measuring, checkpointing, options.hash ? print_hash : OnPassHash(),
+        options.target ? &*options.target : nullptr);
     if (!options.quiet) {
         const Report& report = rendering.report;
         Progress progress{report.iterations, rendering.settings.iterations, report.wall_seconds};
@@ -212,6 +244,8 @@ void execute(const RenderOptions& options) {
         print_result(fmt::format("picture {}\n", hash_text(hash_of(rendering.image))));
     }
     if (options.stop_at) print_stop(*options.stop_at, rendering, options.quiet);
+    if (rendering.estimate && !options.quiet) print_estimate(*rendering.estimate);
+    if (options.target) print_target(*options.target, rendering, options.quiet);
     write_outputs(options, scene, rendering);
     if (options.verbose) print_table(rendering.report);
     if (const auto& failure = rendering.failure) {

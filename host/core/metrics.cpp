@@ -13,8 +13,6 @@
 namespace vkcppm {
 namespace {
 
-constexpr std::size_t trimmed_one_in = 1000;
-
 /// Mean of the pixels' values, and without the largest. values [pixels], reordered.
 Measure measure(std::vector<double> values) {
     const auto mean = [&](std::size_t count) {

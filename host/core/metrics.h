@@ -15,10 +15,13 @@ namespace vkcppm {
 /// What relMSE adds to r^2, so that black pixels of the reference do not decide it.
 inline constexpr double relmse_epsilon = 0.01;
 
+/// The share of pixels that a trimmed measure leaves out: floor(pixels / 1000).
+inline constexpr std::size_t trimmed_one_in = 1000;
+
 /// A mean of squared or relative errors over pixels.
 struct Measure {
     double all = 0.0;
-    double trimmed = 0.0;  // without the floor(pixels / 1000) pixels where it is largest
+    double trimmed = 0.0;  // without the pixels where it is largest, one in trimmed_one_in
 };
 
 /// Means run over the pixels that are finite in both pictures, and over channels where not said otherwise.

@@ -60,6 +60,7 @@ std::uint64_t each(Entries entries, const Counts& counts) {
         case Entries::where_instances: return counts.glossy && counts.instances ? 1 : 0;
         case Entries::asked_groups: return counts.asked_groups;
         case Entries::where_traced: return counts.traced ? 1 : 0;
+        case Entries::error_groups: return counts.errors ? ERROR_GROUPS : 0;
     }
     return 0;
 }

@@ -48,6 +48,7 @@ enum class Entries {
     where_instances,  // one, in glossy scenes that have instances
     asked_groups,     // of lights that eye paths ask for
     where_traced,     // one, in the path tracer
+    error_groups,     // ERROR_GROUPS, where errors are estimated
 };
 
 enum class Life { scratch, carried };
@@ -92,6 +93,7 @@ struct Counts {
     bool glossy = false;
     bool instances = false;
     bool traced = false;
+    bool errors = false;
 };
 
 /// Entries of a buffer of a row, of each of them where the row has one for every band; 0 for one that is uploaded.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "flat/features.h"
+#include "render/error_estimate.h"
 #include "render/estimators.h"
 #include "render/grid.h"
 #include "render/kernels.h"
@@ -215,7 +216,9 @@ void Integrator::look_for_radii(std::uint32_t i, std::uint32_t first_round) {
 }
 
 void Integrator::update(std::uint32_t i, std::uint64_t pixels) {
-    launch(KernelId::update, pixels, {.iteration = i, .last_round = 1, .plans_next = plans_grid(i + 1) ? 1u : 0u});
+    const std::uint32_t plans_next = plans_grid(i + 1) ? 1u : 0u;
+    launch(KernelId::update, pixels,
+           {.iteration = i, .last_round = 1, .plans_next = plans_next, .error_group = error_group(i)});
     launch(KernelId::advance, 1, {.iteration = i, .last_round = 1, .last_band = band_ + 1 == bands_.count() ? 1u : 0u});
 }
 
@@ -475,6 +478,19 @@ std::map<std::string, std::vector<float>> Integrator::aovs() const {
         }
     }
     return channels;
+}
+
+ErrorSums Integrator::error_sums() const {
+    assert(counts_.errors);
+    ErrorSums sums{{params_.width, params_.height}, completed_, {}};
+    for (std::uint32_t group = 0; group < ERROR_GROUPS; ++group) {
+        for (std::uint32_t band = 0; band < bands_.count(); ++band) {
+            const std::uint64_t bytes = bands_.size(band) * sizeof(glm::vec4);
+            const auto part = buffers_.at(Binding::errors, band).download<glm::vec4>(bands_.size(band), group * bytes);
+            sums.of_group[group].insert(sums.of_group[group].end(), part.begin(), part.end());
+        }
+    }
+    return sums;
 }
 
 void Integrator::set_params(const gpu::Params& params) {

@@ -13,6 +13,7 @@
 
 #include "core/image.h"
 #include "render/buffers.h"
+#include "render/error_estimate.h"
 #include "render/kernel_choice.h"
 #include "render/kernels.h"
 #include "render/memory.h"
@@ -63,6 +64,9 @@ public:
 
     /// The channels of Rendering::aovs. Asserts that the settings asked for them.
     std::map<std::string, std::vector<float>> aovs() const;
+
+    /// What errors are estimated from. Asserts that the settings asked for them.
+    ErrorSums error_sums() const;
 
     /// [P] m: the radius of every pixel's disc now; 0 where none of its eye paths has gathered yet.
     std::vector<float> radii() const;

@@ -88,6 +88,7 @@ Counts counts_of(const gpu::Params& params, const Settings& settings, const Devi
     counts.moments = moment_rows(estimator, settings.rings, settings.sectors);
     counts.nearest = settings.knn;
     counts.aovs = settings.aovs;
+    counts.errors = settings.error;
     counts.glossy = (features & FEATURE_GLOSS) != 0;
     counts.instances = (features & FEATURE_INSTANCES) != 0;
     counts.asked_groups = ASKS_FOR_LIGHTS(features) ? GROUPS_ASKED(features) : 0;

@@ -11,7 +11,7 @@ constexpr std::uint32_t most_rounds = 64;  // of a submission
 
 Specialization specialize(const FlatScene& scene, const Settings& settings, PathTracer::Light light) {
     std::uint32_t features = feature_bits(scene, settings);
-    features &= ~(FEATURE_AOVS | FEATURE_SPLIT | FEATURE_DIRECT);
+    features &= ~(FEATURE_AOVS | FEATURE_ERRORS | FEATURE_SPLIT | FEATURE_DIRECT);
     if (light == PathTracer::Light::split) features |= FEATURE_SPLIT;
     return scene_specialization(scene, features);
 }

@@ -1,6 +1,7 @@
 #include "render/render.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include <fmt/format.h>
 
@@ -49,7 +50,9 @@ CurvePoint measure(Integrator& integrator, const Image& reference) {
 }  // namespace
 
 Rendering render(const Scene& scene, const Settings& wanted, Device& device, const KeepGoing& keep_going,
-                 const Measuring* measuring, const Checkpointing& checkpointing, const OnPassHash& on_hash) {
+                 const Measuring* measuring, const Checkpointing& checkpointing, const OnPassHash& on_hash,
+                 const Target* target) {
+    assert(!target || wanted.error);
     Rendering result;
     const double setup = wall_now();
     result.settings = resolve_settings(wanted, scene);
@@ -86,18 +89,25 @@ Rendering render(const Scene& scene, const Settings& wanted, Device& device, con
         error = {measuring->metric, measuring->metric->of(latest.error), latest.iterations};
     };
     if (checkpointing.from && measuring) watch.off_the_clock(take_measure);
+    std::optional<ErrorEstimate> estimate;
+    const auto look = [&] {
+        if (settings.error && is_look(integrator.completed())) estimate = estimate_error(integrator.error_sums());
+    };
+    look();  // the checkpoint may be of a render that ended so
     const auto ended = [&] {
         if (integrator.completed() == 0) return false;
         const bool late = settings.seconds && watch.wall() >= *settings.seconds;
         const bool near = measuring && measuring->stop_at && error && error->value <= *measuring->stop_at;
-        return integrator.completed() >= settings.iterations || late || near;
+        const bool sure = target && is_met(*target, estimate);
+        return integrator.completed() >= settings.iterations || late || near || sure;
     };
     const auto submit = [&] {
         if (on_hash) {
             for (const auto& [pass, hash] : integrator.run_hashed()) on_hash(integrator.completed(), pass, hash);
         } else {
-            integrator.run(submission_size(integrator.completed(), watch.wall(), settings,
-                                           [&](std::uint32_t done) { return is_measured(measuring, done); }));
+            integrator.run(submission_size(integrator.completed(), watch.wall(), settings, [&](std::uint32_t done) {
+                return is_measured(measuring, done) || (settings.error && is_look(done));
+            }));
         }
     };
     bool going = true;
@@ -114,7 +124,8 @@ Rendering render(const Scene& scene, const Settings& wanted, Device& device, con
             watch.off_the_clock(take_measure);
             if (is_snapshot(done)) result.curve.push_back(latest);
         }
-        going = keep_going({done, settings.iterations, watch.wall(), error});
+        look();
+        going = keep_going({done, settings.iterations, watch.wall(), error, estimate});
         if (checkpointing.keep && watch.wall() - kept_at >= checkpointing.every) watch.off_the_clock(keep);
     }
     book();
@@ -125,6 +136,19 @@ Rendering render(const Scene& scene, const Settings& wanted, Device& device, con
     }
     result.image = integrator.resolve();
     if (settings.aovs) result.aovs = integrator.aovs();
+    if (settings.error && result.report.iterations >= least_estimated) {
+        const ErrorSums sums = integrator.error_sums();
+        result.estimate = estimate_error(sums);
+        result.aovs.merge(error_channels(sums));
+        // What is found once is missed as often.
+        constexpr double much = 0.01;
+        if (result.estimate->rare > much) {
+            result.warnings.push_back(fmt::format(
+                "{:.2g} % of the picture's light is in pixels that have found most of theirs in one of {} parts of the "
+                "iterations: other pixels may have missed such light, which no estimate of the error knows",
+                100.0 * result.estimate->rare, ERROR_GROUPS));
+        }
+    }
     integrator.fill(result.report);
     result.report.peak_memory_bytes = peak_memory();
     // Discs as wide as that hold no shadow of what the picture shows.

@@ -15,6 +15,7 @@
 #include "core/image.h"
 #include "core/metrics.h"
 #include "render/checkpoint.h"
+#include "render/error_estimate.h"
 #include "render/report.h"
 #include "render/settings.h"
 #include "scene/scene.h"
@@ -42,6 +43,7 @@ struct Progress {
     std::uint64_t iterations_total = 0;  // the bound of the settings
     double wall_seconds = 0.0;           // since the first iteration began, without measuring
     std::optional<LatestError> error = {};
+    std::optional<ErrorEstimate> estimate = {};  // the latest
 };
 
 /// Called between iterations; false ends the render after the iteration that is done.
@@ -67,9 +69,11 @@ struct Rendering {
     Report report;
     Curve curve;  // at every is_snapshot() and after the last iteration, where measured
     /// [P] each, where the settings ask for them: ppm.radius (m), ppm.photons, ppm.batch, ppm.rejections,
-    /// ppm.statistic (over its threshold), ppm.iterations, Z (m along the camera's axis), Albedo.R/G/B, N.X/Y/Z.
+    /// ppm.statistic (over its threshold), ppm.iterations, Z (m along the camera's axis), Albedo.R/G/B, N.X/Y/Z; those
+    /// of error_channels().
     std::map<std::string, std::vector<float>> aovs;
-    std::vector<std::string> warnings;  // what went wrong on the way, one line each
+    std::optional<ErrorEstimate> estimate;  // where asked for, of `least_estimated` iterations or more
+    std::vector<std::string> warnings;      // what went wrong on the way, one line each
     /// Why it ended before its bounds: the picture is of the iterations done by then, aovs and counts of the one that
     /// was begun as well.
     std::optional<Error> failure;
@@ -80,12 +84,12 @@ struct Rendering {
 /// size (usage). Where it is measured, submissions end at snapshots, or with every iteration where it stops at an
 /// error; the picture is the same, and neither Settings::seconds nor the report's seconds count the time it takes.
 /// Where what grows with the paths no longer fits the device, the picture is of the iterations before, that error is
-/// the failure, and no checkpoint is kept at the end.
-/// From a checkpoint, of the same scene and settings but for their bounds `iterations` and `seconds`, it goes on as if
-/// it had never ended: iterations, seconds, totals and curve count from the first start. on_hash: a submission is a
-/// pass, and the hash of each is told (Integrator::run_hashed); the picture is the same.
+/// the failure, and no checkpoint is kept at the end. From a checkpoint, of the same scene and settings but for their
+/// bounds `iterations` and `seconds`, it goes on as if it had never ended: iterations, seconds, totals and curve count
+/// from the first start. on_hash: a submission is a pass, and the hash of each is told (Integrator::run_hashed); the
+/// picture is the same. With a target the settings must ask for the error.
 Rendering render(const Scene& scene, const Settings& settings, Device& device, const KeepGoing& keep_going,
                  const Measuring* measuring = nullptr, const Checkpointing& checkpointing = {},
-                 const OnPassHash& on_hash = {});
+                 const OnPassHash& on_hash = {}, const Target* target = nullptr);
 
 }  // namespace vkcppm

@@ -136,6 +136,7 @@ double lens_diameter(const Settings& settings, const Camera& camera) {
 std::vector<Feature> features_of(const Settings& settings) {
     std::vector<Feature> features;
     if (settings.aovs) features.push_back(make_feature(FEATURE_AOVS, "--aovs"));
+    if (settings.error) features.push_back(make_feature(FEATURE_ERRORS, "--error"));
     if (settings.fstop) {
         features.push_back(make_feature(FEATURE_LENS, fmt::format("--fstop {:g}", *settings.fstop)));
     } else if (settings.aperture > 0.0) {

@@ -86,6 +86,10 @@ SETTING(aovs, bool, false, "aovs", channels, any(), flag,
         "ppm.iterations; Z, Albedo, N of the first surfaces; and direct, caustic and rest, the layers of\n"
         "the picture")
 
+SETTING(error, bool, false, "error", channels, any(), flag,
+        "Estimate the error without a reference, noise and bias apart: of the picture, and of every pixel\n"
+        "in the channels StdErr, Bias and Bound of the EXR")
+
 // The half of a reference that is caustics alone (study/reference.h): the starting radius in footprints of the pixel, a
 // quarter of it at a photon's first rough surface.
 SETTING(caustics, std::optional<double>, std::nullopt, "caustics", internal, any(), number, "")

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "study/blocks.h"
+#include "core/blocks.h"
 
 namespace vkcppm {
 namespace {

@@ -16,7 +16,7 @@
 #include "render/path_tracer.h"
 #include "render/render.h"
 #include "study/batch_mean.h"
-#include "study/blocks.h"
+#include "core/blocks.h"
 #include "study/significance.h"
 #include "vk/device.h"
 
@@ -39,6 +39,7 @@ Settings caustic_settings(const Settings& render) {
     settings.alpha = schedule;
     settings.caustics = first_radius;
     settings.aovs = false;
+    settings.error = false;
     settings.seed ^= other_seed;
     return settings;
 }

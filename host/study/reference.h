@@ -31,7 +31,7 @@ struct ReferenceSettings {
     double trust = 0.05;           // largest relative standard error of a pixel that is trusted, > 0
 };
 
-/// Standard errors of means over blocks (study/blocks.h), from the same batches as those of pixels: neighbouring pixels
+/// Standard errors of means over blocks (core/blocks.h), from the same batches as those of pixels: neighbouring pixels
 /// share photons, so that theirs do not tell it.
 struct BlockErrors {
     std::uint32_t side = 0;                 // pixels

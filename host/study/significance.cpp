@@ -7,7 +7,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <glm/geometric.hpp>
 
-#include "study/blocks.h"
+#include "core/blocks.h"
 
 namespace vkcppm {
 namespace {

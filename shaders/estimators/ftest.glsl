@@ -14,7 +14,7 @@ const uint MEANS = DISC_CELLS;
 const uint SQUARES = 2u * DISC_CELLS;
 const uint LOW = DISC_CELLS + RINGS;  // from a mean or a sum of squares to its low part
 
-QUANTILES(READS)
+QUANTILES(TEXELS)
 
 // Contributions a cell that this invocation has accepted, in registers as `counted`.
 float contributed[DISC_CELLS];
@@ -73,12 +73,14 @@ void take_sample(uint pixel, bool diffuse, inout PixelState state) {
     }
 }
 
+float quantile(uint row) { return uintBitsToFloat(texelFetch(quantiles_texels, int(row)).x); }
+
 // Threshold for the disc of the first `rings` rings after m samples: linear between samples in 1 / (m - 1).
 float f_threshold(uint rings, float m) {
     float x = min(2.0 / (m - 1.0), 1.0) * float(F_QUANTILES - 1);
     uint i = min(uint(x), uint(F_QUANTILES - 2));
     uint row = (rings - 1u) * F_QUANTILES + i;
-    return mix(quantiles[row], quantiles[row + 1u], x - float(i));
+    return mix(quantile(row), quantile(row + 1u), x - float(i));
 }
 
 // F = [m sum(mean_i - mean)^2 / (n - 1)] / [within / (n (m - 1))] over n cells, over its threshold. Fewer than three

@@ -65,7 +65,7 @@ EyePath begin_eye_path(uint pixel) {
     EyePath path;
     path.pixel = pixel;
     path.at = EyeState(vec3(0.0), flags_at_eye(), vec3(0.0), 0.0, vec3(1.0), 0.0, vec3(0.0), 0.0, HIT_UNFINISHED,
-                       vec3[](vec3(0.0), vec3(0.0)), vec3(1.0), 0u, media_at_eye());
+                       vec3[](vec3(0.0), vec3(0.0)), vec3(1.0), 0u, media_at_eye(), 0.0);
     path.light_rays = no_light_rays();
     path.position = HitPosition(vec3(0.0), HIT_NONE);
     path.weight = HitWeight(vec3(0.0), 0u);

@@ -2,7 +2,7 @@
 // One invocation a pixel: sums the photons in its disc with the radius in force before this iteration's photons were
 // looked at, and bins them for the estimator. Reads hits, pixels, grid, sorted photons and their flux, in glossy scenes
 // hit_surface and the scene, and with solids in solids eye_paths; writes gathered, tally or moments, cursors, and where
-// asked for aovs, of which layers wait in eye_paths between rounds.
+// asked for aovs, of which layers wait in eye_paths between rounds, and there what errors are estimated from.
 // O(photons in the cells that the disc touches). Fails by running out of steps: goes on next round.
 // In glossy scenes every photon is weighed by the BSDF for its direction, made from the surface of the hit again.
 // Acceptance: |y - x| < R strictly (appm looks further for its derivative), and the photon's geometric normal agrees
@@ -10,6 +10,7 @@
 // 1 / (pi R^2), but for appm's.
 #include "include/kernel.glsl"
 #include "include/bsdf.glsl"
+#include "include/colour.glsl"
 #include "include/frame.glsl"
 #include "include/hits.glsl"
 #include "include/layers.glsl"
@@ -40,6 +41,7 @@ struct Receiver {
     vec3 tangent;      // over R: offsets by them are those in the unit disc
     vec3 bitangent;
     float reach2;      // squared distance up to which photons are looked at
+    vec3 weight;       // of what arrives, where errors are asked for
     // In glossy scenes the surface that the eye path ended on, as it met it.
     Surface surface;
     Bsdf bsdf;
@@ -63,7 +65,9 @@ Receiver receiver_of(uint pixel, HitPosition hit) {
     Receiver r;
     r.pixel = pixel;
     r.position = hit.position;
-    r.normal = unpack_direction(hit_weight_at(pixel).normal);
+    HitWeight seen = hit_weight_at(pixel);
+    r.normal = unpack_direction(seen.normal);
+    r.weight = seen.weight;
     r.both_sides = gathers_both_sides(hit);
     r.radius2 = pixels_at(pixel).radius2;
     r.inverse_radius = inversesqrt(r.radius2);
@@ -76,6 +80,11 @@ Receiver receiver_of(uint pixel, HitPosition hit) {
 
 // True where the surface is the first that is not perfectly smooth: photons there have the layers that they say.
 bool is_first_seen(uint pixel) { return !HAS_ROUGH || (eye_paths[pixel].flags & PATH_STRAIGHT) != 0u; }
+
+// Of the weighted flux's luminance what is bias, where errors are asked for: by the sums with the same kernel of half
+// and of a quarter of the area. host/render/error_estimate.h says how.
+float bias = 0.0;
+const float INNER_BIAS = 2.0 + sqrt(2.0);
 
 vec3 layer_flux[LAYERS] = vec3[](vec3(0.0), vec3(0.0));  // parts of the sum, where there are further channels
 
@@ -100,6 +109,12 @@ void weigh(Receiver r, uint index, inout Gathered sum) {
     float q = squared * r.inverse_radius * r.inverse_radius;
     vec3 counted = inside ? power * photon_weight(q, is_first_rough(flux)) : vec3(0.0);
     add_corrected(sum.flux, sum.excess, counted);
+    if (HAS_ERRORS && inside) {
+        bool first = is_first_rough(flux);
+        float half_area = q < 0.5 ? 2.0 * photon_weight(2.0 * q, first) : 0.0;
+        float quarter = q < 0.25 ? 4.0 * photon_weight(4.0 * q, first) : 0.0;
+        bias += luminance(r.weight * (counted + power * (INNER_BIAS * (half_area - quarter) - half_area)));
+    }
     if (HAS_AOVS) {
         uint layer = layer_of(flux);
         if (layer < LAYERS) layer_flux[layer] += counted;
@@ -168,6 +183,7 @@ void main() {
         if (cursor.cell.x == CURSOR_DONE) return;
         sum = gathered_at(pixel);
         if (HAS_AOVS) layer_flux = eye_paths[pixel].layer;
+        if (HAS_ERRORS) bias = eye_paths[pixel].bias;
     }
     Receiver r = receiver_of(pixel, hit);
 
@@ -189,6 +205,7 @@ void main() {
         weigh_queue(r, queued, sum, steps);
     }
     flush(pixel);
+    if (HAS_ERRORS) eye_paths[pixel].bias = bias;
     if (HAS_AOVS) {
         // As the update pass does with all; between rounds they wait with the eye path, which has ended.
         if (!walked(cursor, box)) {

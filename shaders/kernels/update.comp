@@ -1,9 +1,11 @@
 #version 460
 // One invocation a pixel: adds the iteration's estimate to the film with the radius that gathered it, then lets the
-// estimator decide the next radius. Reads hits, gathered; writes film, pixels, tally or moments and, before the
-// grid is planned anew, the histograms by radius that its plan is made from. O(rings x sectors).
+// estimator decide the next radius. Reads hits, gathered; writes film, pixels, tally or moments, where errors are asked
+// for (eye_paths has a part of them) errors, and, before the grid is planned anew, the histograms by radius that its
+// plan is made from. O(rings x sectors).
 // Cannot fail: a contribution that is not finite is dropped and counted in status.invalid.
 #include "include/kernel.glsl"
+#include "include/error_groups.glsl"
 #include "include/hits.glsl"
 #include "include/pixels.glsl"
 #include "include/radius_bins.glsl"
@@ -11,6 +13,7 @@
 #include "include/sum.glsl"
 #include "estimators/estimator.glsl"
 
+EYE_PATHS(READS)
 FILM(STORES)
 FILM(WORD_RECORDS)
 
@@ -21,10 +24,14 @@ void main() {
     vec3 estimate = hit_emission_at(pixel).emission;
     bool diffuse = gathers(hit_position_at(pixel));
     Gathered sum = gathered_at(pixel);
+    float bias = 0.0;
     if (diffuse) {
         // L = W rho / pi * sum(power) / (pi R^2 J), the radius being that before this update.
-        estimate += hit_weight_at(pixel).weight * sum.flux * (params.inverse_paths / (PI * state.radius2));
+        float inverse = params.inverse_paths / (PI * state.radius2);
+        estimate += hit_weight_at(pixel).weight * sum.flux * inverse;
+        if (HAS_ERRORS) bias = eye_paths[pixel].bias * inverse;
     }
+    if (HAS_ERRORS) add_to_group(pixel, estimate, bias);
     if (finite(estimate)) {
         Film f = film_at(pixel);
         add(f.sum, f.low, estimate);

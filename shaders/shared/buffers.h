@@ -73,13 +73,16 @@
 #define PAIRS_B(ROW)           ROW(38, pairs_b, uvec2, photon_slot, levels, storage, scratch, never)
 #define COUNTERS(ROW)          ROW(39, counters, uint, counter, one, words, scratch, apart)
 // [rings x F_QUANTILES] thresholds of the F-tests.
-#define QUANTILES(ROW)         ROW(40, quantiles, float, rest, uploaded, storage, scratch, never)
+#define QUANTILES(ROW)         ROW(40, quantiles, float, rest, uploaded, word_texels, scratch, never)
 // Of pixels again: searches that are unfinished.
 #define SEARCH_STATES(ROW)     ROW(41, search_states, SearchState, band_pixel, one, storage, scratch, never)
 #define LIGHT_RAYS(ROW)        ROW(42, light_rays, LightRay, band_pixel, asked_groups, storage, scratch, never)
 // Of the scene again: instances of meshes, and of pixels in glossy scenes that have some, in which one the hit is.
 #define INSTANCES(ROW)         ROW(43, instances, Instance, instance, uploaded, uint_texels, scratch, never)
 #define HIT_INSTANCE(ROW)      ROW(44, hit_instance, uint, band_pixel, where_instances, words, scratch, never)
+// [ERROR_GROUPS x pixels] where errors are estimated: sums over the iterations of a group, of radiance in x, y and z,
+// of the bias of its luminance in w (include/error_groups.glsl).
+#define ERRORS(ROW)            ROW(45, errors, vec4, pixel, error_groups, records, carried, update)
 
 #define FIRST_SCENE_BUFFERS(ROW)                                                                             \
     TRIANGLES(ROW) SHADING(ROW) TEXCOORDS(ROW) VERTEX_COLORS(ROW) TANGENTS(ROW) MATERIALS(ROW) TEXTURES(ROW) \
@@ -92,7 +95,7 @@
     IMAGE(ROW) TRACES(ROW)                                                                                \
     PATHS(ROW) PHOTONS(ROW) PHOTON_FLUX(ROW) SORTED(ROW) SORTED_FLUX(ROW) PAIRS_A(ROW) PAIRS_B(ROW)       \
     COUNTERS(ROW) QUANTILES(ROW) SEARCH_STATES(ROW) LIGHT_RAYS(ROW) INSTANCES(ROW)                        \
-    HIT_INSTANCE(ROW)
+    HIT_INSTANCE(ROW) ERRORS(ROW)
 // clang-format on
 
 // PARAMS(BINDING_NUMBER): its binding.

@@ -87,7 +87,8 @@ using uint = std::uint32_t;
     SETTING(25, DIRECT, direct light asked for)                                                                \
     SCENE(26, INSTANCES, instances)              /* of meshes that are stored once */                          \
     MATERIAL(27, SPECULAR_GLASS, specular factors of glass, specular_glass)                                    \
-    SCENE(28, NESTED, solids in one another)     /* or that touch or overlap: include/media.glsl */
+    SCENE(28, NESTED, solids in one another)     /* or that touch or overlap: include/media.glsl */          \
+    SETTING(31, ERRORS, errors of pixels)        /* what they are estimated from: render/error_estimate.h */
 // clang-format on
 #define FEATURE_BIT(bit, NAME, words) VKCPPM_CONST uint FEATURE_##NAME = 1u << bit;
 #define FEATURE_BIT_OF_MATERIAL(bit, NAME, words, trait) FEATURE_BIT(bit, NAME, words)
@@ -410,6 +411,7 @@ struct EyeState {
     vec3 direct;           // what the throughput is for direct light that the next ray meets: include/direct.glsl
     uint met;              // surfaces
     uvec2 media;           // include/media.glsl
+    float bias;            // of the gather that follows: where errors are estimated
 };
 
 // Sum of one pass of the gather over a pixel's disc, read as 2 texels.
@@ -459,6 +461,9 @@ struct Aovs {
     vec3 layer[LAYERS];      // of radiance, sums over all iterations
     vec3 layer_low[LAYERS];
 };
+
+// Groups of iterations from whose spread errors of pixels are estimated: render/error_estimate.h.
+#define ERROR_GROUPS 8
 
 // Sum of radiance in two floats: sum + low is the estimate times the iterations.
 #define FIELDS_Film(FIELD, ARRAY, OPTIONAL) \
@@ -623,6 +628,7 @@ struct Launch {
     uint digit_shift VKCPPM_ZERO;  // radix: bits below the digit
     uint reads_b VKCPPM_ZERO;      // radix: 1: from pairs_b to pairs_a, 0: from pairs_a to pairs_b
     uint plans_next VKCPPM_ZERO;   // update: 1: the next grid is planned, the radii are counted for it
+    uint error_group VKCPPM_ZERO;  // update: of the iteration: include/error_groups.glsl
     // Of the band of the picture that the buffers of pixels hold, or are bound to: include/kernel.glsl.
     uint band VKCPPM_ZERO;         // its number; 0 in the passes of photons
     uint last_band VKCPPM_ZERO;    // advance: 1: no other comes after it

@@ -87,7 +87,7 @@ TEST_F(Checkpoint, SurvivesBeingKilledAtAnyMoment) {
         all.insert(all.end(), next.begin(), next.end());
         Process process(all, folder_.path());
         if (kill % 2 == 0) {
-            ASSERT_TRUE(process.wait_for_message("iterations (")) << process.wait().err;
+            ASSERT_TRUE(process.wait_for_message(" iterations")) << process.wait().err;
             for (int i = 0; i < 20'000 && !there(kill == 0 ? ".ckpt" : ".part"); ++i) pause(50);
             pause(since_write(random));
         } else {
@@ -125,7 +125,7 @@ TEST_P(CheckpointSignal, KeepsTheStateToo) {
     Words all = words({"--iterations", "1073741823", "--checkpoint", "a.ckpt", "-o", "a.exr"});
     all.insert(all.begin(), test::program());
     Process process(all, folder_.path());
-    ASSERT_TRUE(process.wait_for_message("iterations (")) << process.wait().err;
+    ASSERT_TRUE(process.wait_for_message(" iterations")) << process.wait().err;
     process.send(GetParam());
     expect_done(process.wait());
     const std::string cut = done("a.exr"), more = std::to_string(std::stoull(cut) + 5);

@@ -396,6 +396,11 @@ TEST_F(Cli, EveryMisuseHasItsExitCodeAndItsLine) {
         {{"--reference", "caustic.exr"}, 2, {"-o", "caustic.exr", "input"}},
         {{"--stop-at", "relmse=1"}, 2, {"--stop-at", "--reference"}},
         {{"--reference", "r.exr", "--stop-at", "worst=1"}, 2, {"--stop-at", "worst", "relmse_trimmed"}},
+        {{"--target", "relmse"}, 2, {"--target", "'relmse'", "noise=2%"}},
+        {{"--target", "psnr=30"}, 2, {"--target", "'psnr=30'", "relmse_trimmed"}},
+        {{"--target", "noise=0"}, 2, {"--target", "noise=0", "greater than 0"}},
+        {{"--confidence", "90"}, 2, {"--confidence", "--target"}},
+        {{"--target", "noise=2%", "--confidence", "100"}, 2, {"--confidence", "'100'", "below 100"}},
         {{"--png", "caustic.exr"}, 2, {"--png", "caustic.exr"}},
         {{"-o", scene("caustic")}, 2, {"-o", "caustic.gltf"}},
         {{"--device", "no such device"}, 69, {"no such device"}},
@@ -975,7 +980,7 @@ TEST_P(CliSignal, KeepsWhatThereIs) {
     test::Process process({test::program(), scene("caustic"), "--size", "16x12", "--photons", "500", "--time", "600s",
                            "-o", "a.exr", "--stats", "a.json"},
                           folder_.path());
-    ASSERT_TRUE(process.wait_for_message("iterations (")) << process.wait().err;
+    ASSERT_TRUE(process.wait_for_message(" iterations")) << process.wait().err;
     process.send(GetParam());
     const auto result = process.wait();
     expect_done(result);
@@ -997,7 +1002,7 @@ TEST_F(Cli, AnInterruptedPictureIsThatOfAsManyIterations) {
     long_words.insert(long_words.begin(), test::program());
     long_words.insert(long_words.end(), {"cut.exr", "--iterations", "1073741823"});
     test::Process process(long_words, folder_.path());
-    ASSERT_TRUE(process.wait_for_message("iterations (")) << process.wait().err;
+    ASSERT_TRUE(process.wait_for_message(" iterations")) << process.wait().err;
     process.send(SIGINT);
     expect_done(process.wait());
     Words short_words = words;

@@ -29,6 +29,7 @@ Settings settings_of(const std::string& estimator) {
     settings.size = Extent{24, 17};
     settings.photons = 800;
     settings.aovs = true;
+    settings.error = true;
     return settings;
 }
 

@@ -27,6 +27,7 @@ Settings settings_of(const std::string& estimator) {
     settings.size = Extent{24, 16};
     settings.photons = 600;
     settings.aovs = true;
+    settings.error = true;
     return settings;
 }
 

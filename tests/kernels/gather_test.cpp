@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "core/display.h"
 #include "oracle/gather.h"
 #include "oracle/octahedral.h"
 #include "support/device/disc_field.h"
@@ -289,6 +290,46 @@ TEST_F(Gather, SumsCountsAndTalliesAreThoseOfAllPhotons) {
         tallies[kind] = tally;
     }
     EXPECT_EQ(sums.size(), 3u);
+}
+
+// What errors are estimated from: by the flux of the whole disc, of its inner half and of its inner quarter.
+TEST_F(Gather, BiasIsThatOfInnerDiscs) {
+    Settings settings = settings_of("cppm", 2400);
+    settings.rings = 4;
+    settings.sectors = 4;
+    settings.error = true;
+    Rig rig(room(), settings);
+    run(rig, 0);
+    const auto states = random_radii(rig, 17);
+    rig.integrator.buffer(Binding::pixels).upload(states);
+    gather(rig);
+    const auto hits = rig.all<gpu::HitPosition>(Binding::hit_position);
+    const auto weights = rig.all<gpu::HitWeight>(Binding::hit_weight);
+    const auto paths = rig.all<gpu::EyeState>(Binding::eye_paths);
+    PhotonSet set = photons_of(rig);
+    const std::vector<oracle::Photon> plain = set.photons;
+    std::size_t compared = 0;
+    for (std::size_t i = 0; i < rig.pixels(); ++i) {
+        const auto point = point_of(hits[i], weights[i], rig.settings);
+        if (!point) continue;
+        for (std::size_t j = 0; j < plain.size(); ++j) {
+            const double shading = std::max(0.0, glm::dot(set.towards[j], point->normal));
+            set.photons[j].flux = plain[j].flux * glm::dvec3(weights[i].weight) * shading /
+                                  std::max(0.01, glm::dot(set.towards[j], plain[j].normal));
+        }
+        const double radius2 = states[i].radius2;
+        const Doubtful doubt = doubtful(*point, radius2, set.photons);
+        if (doubt.accepted > 0 || doubt.cells > 0) continue;
+        const auto found = oracle::gather(*point, std::sqrt(radius2), set.photons);
+        double ring[4] = {};
+        for (std::size_t cell = 0; cell < 16; ++cell) ring[cell / 4] += luminance(found.cell_flux[cell]);
+        const double disc = ring[0] + ring[1] + ring[2] + ring[3];
+        const double half = 2.0 * (ring[0] + ring[1]), quarter = 4.0 * ring[0];
+        const double want = disc - half + (2.0 + std::sqrt(2.0)) * (half - quarter);
+        ASSERT_NEAR(paths[i].bias, want, 1e-4 * disc) << where(i, *point, radius2) << ", " << found.count << " photons";
+        compared += found.count > 8 ? 1 : 0;
+    }
+    EXPECT_GT(compared, rig.pixels() / 4);
 }
 
 TEST_F(Gather, AFoldedTallyAddsOppositeSectors) {

@@ -43,6 +43,16 @@ TEST(Progress, EndsByTimeOrByIterationsWhicheverIsSooner) {
     EXPECT_EQ(progress_text({16, 1073741823, 95.0}, 90.0), "16 iterations (100 %), 0 s left");
 }
 
+TEST(Progress, TellsWhatARenderThinksOfItsOwnErrorAndNoEndWhereThatDecides) {
+    ErrorEstimate estimate;
+    estimate.relmse_trimmed.error = {0.00234, 0.0001};
+    EXPECT_EQ(progress_text({16, 1073741823, 30.0}, std::nullopt), "16 iterations");
+    EXPECT_EQ(progress_text({40, 1073741823, 30.0, {}, estimate}, std::nullopt),
+              "40 iterations, relmse_trimmed about 0.0023");
+    EXPECT_EQ(progress_text({32, 64, 30.0, {}, estimate}, std::nullopt),
+              "32/64 iterations (50 %), 30 s left, relmse_trimmed about 0.0023");
+}
+
 TEST(Progress, TellsTheLatestErrorAndHowOldItIs) {
     const LatestError error{&find_metric("", "relmse"), 0.012345, 16};
     EXPECT_EQ(progress_text({16, 64, 30.0, error}, std::nullopt),

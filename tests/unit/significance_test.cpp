@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "study/batch_mean.h"
-#include "study/blocks.h"
+#include "core/blocks.h"
 
 namespace vkcppm {
 namespace {

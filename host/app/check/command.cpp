@@ -17,7 +17,7 @@
 #include "core/error.h"
 #include "io/atomic_file.h"
 #include "io/exr.h"
-#include "study/blocks.h"
+#include "core/blocks.h"
 #include "study/check.h"
 
 namespace vkcppm {

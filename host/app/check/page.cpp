@@ -8,7 +8,7 @@
 
 #include "app/page/html.h"
 #include "io/png.h"
-#include "study/blocks.h"
+#include "core/blocks.h"
 #include "study/false_colour.h"
 
 namespace vkcppm {

@@ -6,7 +6,7 @@
 
 #include "app/measures.h"
 #include "app/record.h"
-#include "study/blocks.h"
+#include "core/blocks.h"
 
 namespace vkcppm {
 namespace {

@@ -1,4 +1,4 @@
-#include "study/blocks.h"
+#include "core/blocks.h"
 
 #include <algorithm>
 #include <cassert>
