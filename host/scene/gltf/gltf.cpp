@@ -11,6 +11,7 @@
 #include "scene/gltf/accessors.h"
 #include "scene/gltf/animation.h"
 #include "scene/gltf/cameras.h"
+#include "scene/gltf/draco.h"
 #include "scene/gltf/file.h"
 #include "scene/gltf/images.h"
 #include "scene/gltf/lights.h"
@@ -113,6 +114,7 @@ Scene read_scene(GltfFile& file, tinygltf::Model& model, const GltfOptions& opti
 Scene load_gltf(const std::filesystem::path& path, const GltfOptions& options) {
     try {
         GltfFile file = read_gltf_file(path, options.root);
+        decode_draco(file);
         tinygltf::Model model = parse_model(file);
         Scene scene = read_scene(file, model, options);
         scene.file = path;
