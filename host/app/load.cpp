@@ -39,9 +39,12 @@ Environment load_environment(const SceneOptions& options, Scene& scene) {
 }  // namespace
 
 Scene load_scene(const SceneOptions& options) {
-    Scene scene =
-        load_gltf(options.file,
-                  {.root = options.root, .animation = options.animation, .at = options.at, .variant = options.variant});
+    Scene scene = load_gltf(options.file, {.root = options.root,
+                                           .animation = options.animation,
+                                           .at = options.at,
+                                           .variant = options.variant,
+                                           .set = options.set,
+                                           .punctual_units = options.punctual_units});
     if (options.environment) scene.environment = load_environment(options, scene);
     if (options.thin_glass == ThinGlass::solid) make_glass_solid(scene);
     for (std::string& line : diagnose(scene)) scene.warnings.push_back(std::move(line));

@@ -97,6 +97,14 @@ ThinGlass parse_thin_glass(const std::string& option, const std::string& text) {
     return text == "solid" ? ThinGlass::solid : ThinGlass::thin;
 }
 
+PunctualUnits parse_punctual_units(const std::string& option, const std::string& text) {
+    for (const PunctualUnits units :
+         {PunctualUnits::radiometric, PunctualUnits::photometric, PunctualUnits::by_generator}) {
+        if (text == name_of(units)) return units;
+    }
+    refuse(option, text, "radiometric, photometric or auto");
+}
+
 /// Seconds of a duration such as 90, 90s, 2m, 1.5h or 500ms.
 double parse_seconds(const std::string& option, const std::string& text) {
     std::string_view unit = text;

@@ -9,6 +9,7 @@
 #include "core/image.h"
 #include "core/metrics.h"
 #include "io/png.h"
+#include "scene/gltf/lights.h"
 #include "study/check.h"
 
 namespace vkcppm {
@@ -36,8 +37,9 @@ PngDepth parse_png_depth(const std::string& option, const std::string& text);   
 double parse_share(const std::string& option, const std::string& text);                    // 0.001 or 0.1 %; >= 0
 Bound parse_bound(const std::string& option, const std::string& text);                     // flip=0.05
 Extent parse_size(const std::string& option, const std::string& text);                     // 512x384
-double parse_seconds(const std::string& option, const std::string& text);        // of 90, 90s, 2m, 1.5h or 500ms; > 0
-StopAt parse_stop_at(const std::string& option, const std::string& text);        // relmse_trimmed=0.0035
+double parse_seconds(const std::string& option, const std::string& text);  // of 90, 90s, 2m, 1.5h or 500ms; > 0
+StopAt parse_stop_at(const std::string& option, const std::string& text);  // relmse_trimmed=0.0035
+PunctualUnits parse_punctual_units(const std::string& option, const std::string& text);
 ThinGlass parse_thin_glass(const std::string& option, const std::string& text);  // thin or solid
 
 }  // namespace vkcppm

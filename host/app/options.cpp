@@ -127,6 +127,18 @@ void add_scene(CLI::App& app, SceneOptions& scene) {
         ->needs("--animation");
     add(app, "--variant", "NAME|INDEX", scene.variant, parse_name,
         "Materials of this variant (KHR_materials_variants)");
+    app.add_option_function<Words>(
+           "--set",
+           [&scene](const Words& words) {
+               for (const std::string& word : words) scene.set.push_back(parse_material_change(word));
+           },
+           "Values of a material, named or by its index, such as glass:ior=1.33; may be given again. Members are\n" +
+               material_members(90))
+        ->type_name("MATERIAL:MEMBER=VALUE[:...]")
+        ->allow_extra_args(false);
+    add(app, "--punctual-units", "radiometric|photometric|auto", scene.punctual_units, parse_punctual_units,
+        "Intensities of point, spot and directional lights: W/sr and W/m2, or candela and lux, 683 of which make\n"
+        "one of those; auto: the latter where Blender's exporter wrote the file (default: auto)");
     app.add_option("--environment", scene.environment,
                    "Light from outside: a picture of all directions, EXR or Radiance")
         ->type_name("FILE.exr|.hdr");

@@ -11,6 +11,8 @@
 #include "core/display.h"
 #include "io/png.h"
 #include "render/settings.h"
+#include "scene/gltf/lights.h"
+#include "scene/gltf/material_changes.h"
 #include "study/check.h"
 #include "study/race.h"
 #include "study/reference.h"
@@ -21,10 +23,12 @@ namespace vkcppm {
 /// The scene and what is done to it before anything else.
 struct SceneOptions {
     std::filesystem::path file;
-    std::optional<std::filesystem::path> root;         // what the file names lies below
-    std::string animation;                             // by name or index, or "all"; empty: at rest
-    double at = 0.0;                                   // s, of the animation
-    std::string variant;                               // by name or index; empty: none
+    std::optional<std::filesystem::path> root;  // what the file names lies below
+    std::string animation;                      // by name or index, or "all"; empty: at rest
+    double at = 0.0;                            // s, of the animation
+    std::string variant;                        // by name or index; empty: none
+    std::vector<MaterialChange> set;            // values of materials, one after the other
+    PunctualUnits punctual_units = PunctualUnits::by_generator;
     std::optional<std::filesystem::path> environment;  // EXR or Radiance
     double environment_rotation = 0.0;                 // degrees about the vertical, counter-clockwise from above
     double environment_strength = 1.0;                 // a factor of its radiance
