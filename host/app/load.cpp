@@ -52,7 +52,16 @@ Scene load_scene(const SceneOptions& options) {
 }
 
 void tell_warnings(const Scene& scene, const SceneOptions& options) {
-    print_warnings(scene.warnings);
+    std::set<std::string> told;
+    tell_warnings(scene, options, told);
+}
+
+void tell_warnings(const Scene& scene, const SceneOptions& options, std::set<std::string>& told) {
+    std::vector<std::string> lines;
+    for (const std::string& line : scene.warnings) {
+        if (told.insert(line).second) lines.push_back(line);
+    }
+    print_warnings(lines);
     if (!options.strict || scene.warnings.empty()) return;
     throw Error(ExitCode::bad_scene, fmt::format("{}: {} warnings; with --strict there must be none",
                                                  options.file.string(), scene.warnings.size()));

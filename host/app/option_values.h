@@ -23,6 +23,11 @@ struct StopAt {
     double value = 0.0;  // > 0
 };
 
+/// Frames of an animation, both ends included.
+struct FrameRange {
+    std::uint32_t first = 0, last = 0;  // first <= last
+};
+
 /// Throws Error(usage): that of `option` is not `wanted`.
 [[noreturn]] void refuse(const std::string& option, const std::string& text, const std::string& wanted);
 
@@ -30,6 +35,8 @@ struct StopAt {
 std::uint32_t parse_whole(const std::string& option, const std::string& text);
 double parse_real(const std::string& option, const std::string& text);
 double parse_factor(const std::string& option, const std::string& text);                   // 0 or more, within floats
+double parse_rate(const std::string& option, const std::string& text);                     // above 0, to 1e6
+FrameRange parse_frames(const std::string& option, const std::string& text);               // 0..47
 std::string parse_name(const std::string& option, const std::string& text);                // not empty
 std::optional<double> parse_exposure(const std::string& option, const std::string& text);  // stops; auto: absent
 ToneMap parse_tone_map(const std::string& option, const std::string& text);                // none, reinhard, aces, agx

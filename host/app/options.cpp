@@ -14,6 +14,7 @@
 
 #include "app/option_values.h"
 #include "core/error.h"
+#include "io/atomic_file.h"
 #include "render/estimators.h"
 #include "render/settings_rows.h"
 
@@ -248,6 +249,18 @@ void declare(CLI::App& app, RenderOptions& options) {
         ->type_name("FILE");
     add(app, "--checkpoint-every", "TIME", options.checkpoint_every, parse_seconds,
         fmt::format("Rendering time between two states that are kept (default: {:g}s)", options.checkpoint_every));
+    CLI::Option* snapshot =
+        add(app, "--snapshot", "TIME", options.snapshot, parse_seconds,
+            "Write the picture, and the PNG, on the way as well: each time that so much rendering time has passed");
+    CLI::Option* frames =
+        add(app, "--frames", "FIRST..LAST", options.frames, parse_frames,
+            "Render these frames of the animation, frame i at i / fps seconds, each into files of its own: -o, --png\n"
+            "and --stats have a place for its number, as out_%04d.exr (default: the scene's name with _%04d.exr).\n"
+            "A frame whose files are there and are of this render is skipped");
+    frames->needs("--animation")->excludes("--at")->excludes("--checkpoint")->excludes("--resume");
+    frames->excludes("--reference")->excludes(snapshot);
+    add(app, "--fps", "X", options.fps, parse_rate, fmt::format("Frames of a second (default: {:g})", options.fps))
+        ->needs(frames);
     add_settings(app, options.settings, {Kind::picture, Kind::view});
     add_settings(app, options.settings, {Kind::parameter});
     add_settings(app, options.settings, {Kind::channels});
@@ -262,11 +275,17 @@ void declare(CLI::App& app, RenderOptions& options) {
 }
 
 void finish(const CLI::App& app, const Words&, RenderOptions& options) {
-    if (app.count("-o") == 0) options.output = options.scene.file.stem().string() + ".exr";
+    if (app.count("-o") == 0) {
+        options.output = options.scene.file.stem().string() + (options.frames ? "_%04d.exr" : ".exr");
+    }
     if (!options.checkpoint) options.checkpoint = options.resume;
     if (!options.checkpoint && app.count("--checkpoint-every") > 0)
         throw Error(ExitCode::usage, "--checkpoint-every needs --checkpoint or --resume");
     if (app.count("--iterations") == 0 && options.settings.seconds) options.settings.iterations = unbounded_iterations;
+    for (const auto& file : {std::optional(options.output), options.png}) {
+        if (options.snapshot && file && is_standard_output(*file))
+            throw Error(ExitCode::usage, "--snapshot: standard output is no place to write a picture to again");
+    }
 }
 
 void declare(CLI::App& app, RaceOptions& options) {
