@@ -218,6 +218,11 @@ TEST(HostileDraco, AttributesThatItsDataHasNot) {
         expect_bad_scene(b.gltf(), {extension_object + ".attributes[\"NORMAL\"] is " + id.dump()});
     }
     b = compressed();
+    const std::string odd = "A\n" + std::string(5000, 'B');  // of which a message quotes what fits into a line
+    extension(b)["attributes"][odd] = 9;
+    primitive(b)["attributes"][odd] = 0;
+    expect_bad_scene(b.gltf(), {extension_object + ".attributes[\"A\\nBBB", "BBB...] is 9"});
+    b = compressed();
     std::swap(extension(b)["attributes"]["NORMAL"], extension(b)["attributes"]["TEXCOORD_0"]);
     expect_bad_scene(b.gltf(), {".type is \"VEC", "of " + object + " of Draco has "});
 }
@@ -225,14 +230,14 @@ TEST(HostileDraco, AttributesThatItsDataHasNot) {
 TEST(HostileDraco, AccessorsThatItsDataIsNot) {
     GltfBuilder b = compressed();
     accessor(b, "NORMAL")["count"] = 50;
-    expect_bad_scene(b.gltf(), {".count (NORMAL of meshes[0].primitives[0]) is 50", "its Draco data has 49"});
+    expect_bad_scene(b.gltf(), {".count (\"NORMAL\" of meshes[0].primitives[0]) is 50", "its Draco data has 49"});
     b = compressed();
     json& indices = b.document["accessors"][primitive(b)["indices"].get<std::size_t>()];
     indices["count"] = 219;
     expect_bad_scene(b.gltf(), {".count (indices of meshes[0].primitives[0]) is 219", "its Draco data has 216"});
     b = compressed();
     accessor(b, "POSITION")["componentType"] = 5124;
-    expect_bad_scene(b.gltf(), {"componentType is 5124", "no type that holds POSITION of meshes[0].primitives[0]"});
+    expect_bad_scene(b.gltf(), {"componentType is 5124", "no type that holds \"POSITION\" of meshes[0].primitives[0]"});
     b = compressed();
     accessor(b, "POSITION")["type"] = "MAT2";
     expect_bad_scene(b.gltf(), {"accessors[", "].type is \"MAT2\"", "POSITION", "has 3 components"});

@@ -15,6 +15,7 @@
 
 #include "scene/gltf/accessor.h"
 #include "scene/gltf/limits.h"
+#include "scene/gltf/schema.h"
 #include "scene/gltf/views.h"
 
 namespace vkcppm {
@@ -148,11 +149,11 @@ public:
             if (accessor == primitive["attributes"].end()) continue;  // nothing says what it is
             const draco::PointAttribute* values = mesh.GetAttributeByUniqueId(id.get<std::uint32_t>());
             if (!values) {
-                bad_scene(file_.name, fmt::format("{}.attributes[\"{}\"]", name, attribute), id.dump(),
+                bad_scene(file_.name, fmt::format("{}.attributes[{}]", name, json_text(attribute)), id.dump(),
                           "its data has no attribute of this number");
             }
             *accessor = add_attribute(accessor->get<std::size_t>(), *values, mesh.num_points(),
-                                      fmt::format("{} of {}", attribute, object), name);
+                                      fmt::format("{} of {}", json_text(attribute), object), name);
         }
         primitive["mode"] = triangles_mode;  // which Draco's triangles are, whatever they were compressed from
     }
