@@ -39,9 +39,12 @@ Environment load_environment(const SceneOptions& options, Scene& scene) {
 }  // namespace
 
 Scene load_scene(const SceneOptions& options) {
-    Scene scene =
-        load_gltf(options.file,
-                  {.root = options.root, .animation = options.animation, .at = options.at, .variant = options.variant});
+    Scene scene = load_gltf(options.file, {.root = options.root,
+                                           .animation = options.animation,
+                                           .at = options.at,
+                                           .variant = options.variant,
+                                           .set = options.set,
+                                           .punctual_units = options.punctual_units});
     if (options.environment) scene.environment = load_environment(options, scene);
     if (options.thin_glass == ThinGlass::solid) make_glass_solid(scene);
     for (std::string& line : diagnose(scene)) scene.warnings.push_back(std::move(line));
@@ -49,7 +52,16 @@ Scene load_scene(const SceneOptions& options) {
 }
 
 void tell_warnings(const Scene& scene, const SceneOptions& options) {
-    print_warnings(scene.warnings);
+    std::set<std::string> told;
+    tell_warnings(scene, options, told);
+}
+
+void tell_warnings(const Scene& scene, const SceneOptions& options, std::set<std::string>& told) {
+    std::vector<std::string> lines;
+    for (const std::string& line : scene.warnings) {
+        if (told.insert(line).second) lines.push_back(line);
+    }
+    print_warnings(lines);
     if (!options.strict || scene.warnings.empty()) return;
     throw Error(ExitCode::bad_scene, fmt::format("{}: {} warnings; with --strict there must be none",
                                                  options.file.string(), scene.warnings.size()));

@@ -1,6 +1,9 @@
 #pragma once
 // The scene of a command line.
 
+#include <set>
+#include <string>
+
 #include "app/options.h"
 #include "scene/scene.h"
 
@@ -11,7 +14,9 @@ namespace vkcppm {
 /// load_gltf and read_environment, and Error(usage) where the environment's strength leads out of floats.
 Scene load_scene(const SceneOptions& options);
 
-/// Prints the warnings of the scene. Throws Error(bad_scene) where there are some and none is allowed.
+/// Prints the warnings of the scene but for those that were `told` of another frame, and adds them to these. Throws
+/// Error(bad_scene) where there are some and none is allowed.
+void tell_warnings(const Scene& scene, const SceneOptions& options, std::set<std::string>& told);
 void tell_warnings(const Scene& scene, const SceneOptions& options);
 
 }  // namespace vkcppm

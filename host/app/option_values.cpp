@@ -14,6 +14,8 @@
 namespace vkcppm {
 namespace {
 
+constexpr std::uint32_t most_frame = 1000000;  // half a day of film: more is taken for a slip
+
 /// Reads the number at the start of `text` and removes it; false where there is none or it does not fit.
 template <typename Number> bool take_number(std::string_view& text, Number& number) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -47,6 +49,24 @@ double parse_factor(const std::string& option, const std::string& text) {
     const double factor = parse_real(option, text);
     if (factor < 0.0 || factor > std::numeric_limits<float>::max()) refuse(option, text, "a number of 0 or more");
     return factor;
+}
+
+double parse_rate(const std::string& option, const std::string& text) {
+    const double rate = parse_real(option, text);
+    if (!(rate > 0.0 && rate <= 1e6)) refuse(option, text, "a number above 0, to 1000000");
+    return rate;
+}
+
+FrameRange parse_frames(const std::string& option, const std::string& text) {
+    std::string_view rest = text;
+    FrameRange frames;
+    const bool has_first = take_number(rest, frames.first) && rest.starts_with("..");
+    if (has_first) rest.remove_prefix(2);
+    if (!has_first || !take_number(rest, frames.last) || !rest.empty() || frames.last < frames.first ||
+        frames.last > most_frame) {
+        refuse(option, text, fmt::format("FIRST..LAST, such as 0..47, the last at most {}", most_frame));
+    }
+    return frames;
 }
 
 std::string parse_name(const std::string& option, const std::string& text) {
@@ -95,6 +115,14 @@ Extent parse_size(const std::string& option, const std::string& text) {
 ThinGlass parse_thin_glass(const std::string& option, const std::string& text) {
     if (text != "thin" && text != "solid") refuse(option, text, "thin or solid");
     return text == "solid" ? ThinGlass::solid : ThinGlass::thin;
+}
+
+PunctualUnits parse_punctual_units(const std::string& option, const std::string& text) {
+    for (const PunctualUnits units :
+         {PunctualUnits::radiometric, PunctualUnits::photometric, PunctualUnits::by_generator}) {
+        if (text == name_of(units)) return units;
+    }
+    refuse(option, text, "radiometric, photometric or auto");
 }
 
 /// Seconds of a duration such as 90, 90s, 2m, 1.5h or 500ms.

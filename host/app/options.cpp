@@ -14,6 +14,7 @@
 
 #include "app/option_values.h"
 #include "core/error.h"
+#include "io/atomic_file.h"
 #include "render/estimators.h"
 #include "render/settings_rows.h"
 
@@ -127,6 +128,18 @@ void add_scene(CLI::App& app, SceneOptions& scene) {
         ->needs("--animation");
     add(app, "--variant", "NAME|INDEX", scene.variant, parse_name,
         "Materials of this variant (KHR_materials_variants)");
+    app.add_option_function<Words>(
+           "--set",
+           [&scene](const Words& words) {
+               for (const std::string& word : words) scene.set.push_back(parse_material_change(word));
+           },
+           "Values of a material, named or by its index, such as glass:ior=1.33; may be given again. Members are\n" +
+               material_members(90))
+        ->type_name("MATERIAL:MEMBER=VALUE[:...]")
+        ->allow_extra_args(false);
+    add(app, "--punctual-units", "radiometric|photometric|auto", scene.punctual_units, parse_punctual_units,
+        "Intensities of point, spot and directional lights: W/sr and W/m2, or candela and lux, 683 of which make\n"
+        "one of those; auto: the latter where Blender's exporter wrote the file (default: auto)");
     app.add_option("--environment", scene.environment,
                    "Light from outside: a picture of all directions, EXR or Radiance")
         ->type_name("FILE.exr|.hdr");
@@ -244,6 +257,18 @@ void declare(CLI::App& app, RenderOptions& options) {
         ->type_name("FILE");
     add(app, "--checkpoint-every", "TIME", options.checkpoint_every, parse_seconds,
         fmt::format("Rendering time between two states that are kept (default: {:g}s)", options.checkpoint_every));
+    CLI::Option* snapshot =
+        add(app, "--snapshot", "TIME", options.snapshot, parse_seconds,
+            "Write the picture, and the PNG, on the way as well: each time that so much rendering time has passed");
+    CLI::Option* frames =
+        add(app, "--frames", "FIRST..LAST", options.frames, parse_frames,
+            "Render these frames of the animation, frame i at i / fps seconds, each into files of its own: -o, --png\n"
+            "and --stats have a place for its number, as out_%04d.exr (default: the scene's name with _%04d.exr).\n"
+            "A frame whose files are there and are of this render is skipped");
+    frames->needs("--animation")->excludes("--at")->excludes("--checkpoint")->excludes("--resume");
+    frames->excludes("--reference")->excludes(snapshot);
+    add(app, "--fps", "X", options.fps, parse_rate, fmt::format("Frames of a second (default: {:g})", options.fps))
+        ->needs(frames);
     add_settings(app, options.settings, {Kind::picture, Kind::view});
     add_settings(app, options.settings, {Kind::parameter});
     add_settings(app, options.settings, {Kind::channels});
@@ -258,7 +283,9 @@ void declare(CLI::App& app, RenderOptions& options) {
 }
 
 void finish(const CLI::App& app, const Words&, RenderOptions& options) {
-    if (app.count("-o") == 0) options.output = options.scene.file.stem().string() + ".exr";
+    if (app.count("-o") == 0) {
+        options.output = options.scene.file.stem().string() + (options.frames ? "_%04d.exr" : ".exr");
+    }
     if (!options.checkpoint) options.checkpoint = options.resume;
     if (!options.checkpoint && app.count("--checkpoint-every") > 0)
         throw Error(ExitCode::usage, "--checkpoint-every needs --checkpoint or --resume");
@@ -267,6 +294,10 @@ void finish(const CLI::App& app, const Words&, RenderOptions& options) {
     if (options.target) {
         options.target->confidence = options.confidence;
         options.settings.error = true;
+    }
+    for (const auto& file : {std::optional(options.output), options.png}) {
+        if (options.snapshot && file && is_standard_output(*file))
+            throw Error(ExitCode::usage, "--snapshot: standard output is no place to write a picture to again");
     }
 }
 

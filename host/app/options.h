@@ -11,6 +11,8 @@
 #include "core/display.h"
 #include "io/png.h"
 #include "render/settings.h"
+#include "scene/gltf/lights.h"
+#include "scene/gltf/material_changes.h"
 #include "study/check.h"
 #include "study/race.h"
 #include "study/reference.h"
@@ -21,10 +23,12 @@ namespace vkcppm {
 /// The scene and what is done to it before anything else.
 struct SceneOptions {
     std::filesystem::path file;
-    std::optional<std::filesystem::path> root;         // what the file names lies below
-    std::string animation;                             // by name or index, or "all"; empty: at rest
-    double at = 0.0;                                   // s, of the animation
-    std::string variant;                               // by name or index; empty: none
+    std::optional<std::filesystem::path> root;  // what the file names lies below
+    std::string animation;                      // by name or index, or "all"; empty: at rest
+    double at = 0.0;                            // s, of the animation
+    std::string variant;                        // by name or index; empty: none
+    std::vector<MaterialChange> set;            // values of materials, one after the other
+    PunctualUnits punctual_units = PunctualUnits::by_generator;
     std::optional<std::filesystem::path> environment;  // EXR or Radiance
     double environment_rotation = 0.0;                 // degrees about the vertical, counter-clockwise from above
     double environment_strength = 1.0;                 // a factor of its radiance
@@ -54,6 +58,9 @@ struct RenderOptions {
     std::optional<std::filesystem::path> resume;      // checkpoint to go on from
     std::optional<std::filesystem::path> checkpoint;  // where checkpoints go: `resume` where no other is named
     double checkpoint_every = 60.0;                   // s
+    std::optional<double> snapshot;                   // s of rendering between two pictures that are written on the way
+    std::optional<FrameRange> frames;                 // of scene.animation; the files are patterns then
+    double fps = 24.0;                                // of the frames
     bool hash = false;                                // print the hash of every pass
     Device::Options device;
     bool quiet = false;

@@ -29,6 +29,8 @@ Json chosen(const SceneOptions& options) {
         json["at"] = options.at;
     }
     if (!options.variant.empty()) json["variant"] = options.variant;
+    for (const MaterialChange& change : options.set) json["set"].push_back(change.text());
+    if (options.punctual_units != PunctualUnits::by_generator) json["punctual_units"] = name_of(options.punctual_units);
     if (options.environment_rotation != 0.0) json["environment_rotation"] = options.environment_rotation;
     if (options.environment_strength != 1.0) json["environment_strength"] = options.environment_strength;
     return json;

@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <new>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/display.h"
+#include "app/frames.h"
 #include "app/interrupt.h"
 #include "app/load.h"
 #include "app/outputs.h"
@@ -143,16 +145,42 @@ void print_hash(std::uint32_t iteration, std::string_view pass, std::uint64_t ha
     print_result(fmt::format("{} {} {}\n", iteration, pass, hash_text(hash)));
 }
 
+void write_picture(const RenderOptions& options, const Scene& scene, const Rendering& rendering) {
+    ExrChannels channels = to_channels(rendering.image);
+    channels.values.insert(rendering.aovs.begin(), rendering.aovs.end());
+    write_exr(options.output, channels, exr_attributes(options.scene, scene, rendering));
+}
+
+/// Writes the picture on its way. A disk that is full for a while costs no more than the snapshots of that while.
+void write_snapshot(const RenderOptions& options, const Scene& scene, const Rendering& rendering) {
+    try {
+        write_picture(options, scene, rendering);
+        if (options.png) {
+            const Display display = display_of(options.display, rendering.image, options.png->string(), true);
+            write_png(*options.png, rendering.image, display, options.png_depth);
+        }
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::cannot_write) throw;
+        print_message(
+            fmt::format("warning: no snapshot after {} iterations: {}", rendering.report.iterations, error.what()));
+    }
+}
+
 Rendering render_with_progress(const Scene& scene, const RenderOptions& options, const Measuring* measuring,
                                const Checkpointing& checkpointing, Device& device) {
     ProgressLine line(stderr, ::isatty(STDERR_FILENO) == 1, options.settings.seconds);
+    Snapshots snapshots;
+    if (options.snapshot) {
+        snapshots.every = *options.snapshot;
+        snapshots.show = [&](const Rendering& so_far) { write_snapshot(options, scene, so_far); };
+    }
     const Rendering rendering = render(
         scene, options.settings, device,
         [&](const Progress& progress) {
             if (!options.quiet) line.update(progress);
             return !interrupted();
         },
-        measuring, checkpointing, options.hash ? print_hash : OnPassHash(),
+        measuring, checkpointing, options.hash ? print_hash : OnPassHash(), snapshots,
         options.target ? &*options.target : nullptr);
     if (!options.quiet) {
         const Report& report = rendering.report;
@@ -170,9 +198,7 @@ void write_outputs(const RenderOptions& options, const Scene& scene, const Rende
     const auto say_wrote = [&](const fs::path& file) {
         if (!options.quiet) print_message("wrote " + file.string());
     };
-    ExrChannels channels = to_channels(rendering.image);
-    channels.values.insert(rendering.aovs.begin(), rendering.aovs.end());
-    write_exr(options.output, channels, exr_attributes(options.scene, scene, rendering));
+    write_picture(options, scene, rendering);
     if (interrupted()) {
         print_message(fmt::format("interrupted after {} iterations: wrote {}", rendering.report.iterations,
                                   options.output.string()));
@@ -197,17 +223,91 @@ void print_table(const Report& report) {
     for (std::string line; std::getline(table, line);) print_message(line);
 }
 
+/// What is said and written of a picture that is done.
+void tell_and_write(const RenderOptions& options, const Scene& scene, const Rendering& rendering) {
+    print_warnings(rendering.warnings);
+    if (options.hash) {
+        print_result(fmt::format("picture {}\n", hash_text(hash_of(rendering.image))));
+    }
+    if (options.stop_at) print_stop(*options.stop_at, rendering, options.quiet);
+    if (rendering.estimate && !options.quiet) print_estimate(*rendering.estimate);
+    if (options.target) print_target(*options.target, rendering, options.quiet);
+    write_outputs(options, scene, rendering);
+    if (options.verbose) print_table(rendering.report);
+    if (const auto& failure = rendering.failure) {
+        throw Error(failure->code(), fmt::format("{}: {} is the picture after {} iterations", failure->what(),
+                                                 options.output.string(), rendering.report.iterations));
+    }
+}
+
+/// Says in one line which frames that follow one another were there.
+class Skipped {
+public:
+    void add(std::uint32_t frame) {
+        if (count_++ == 0) first_ = frame;
+        last_ = frame;
+    }
+    void tell(bool quiet) {
+        if (count_ > 0 && !quiet) {
+            print_message(count_ == 1 ? fmt::format("frame {} is there, of this render: skipped", first_)
+                                      : fmt::format("frames {}..{} are there, of this render: skipped", first_, last_));
+        }
+        count_ = 0;
+    }
+
+private:
+    std::uint32_t first_ = 0, last_ = 0, count_ = 0;
+};
+
+std::vector<Output> outputs_of(const RenderOptions& options) {
+    return {{"-o", options.output, ".exr"}, {"--png", options.png, ".png"}, {"--stats", options.stats, ".json"}};
+}
+
+/// Renders the frames one after the other on one device. One that is interrupted is not written: what is there is done.
+void render_frames(const RenderOptions& options) {
+    const auto [first, last] = *options.frames;
+    for (std::uint32_t i = first; i <= last; ++i) {
+        check_outputs({options.scene.file, options.scene.environment}, outputs_of(frame_of(options, i)), options.hash);
+    }
+    std::optional<Device> device;
+    std::optional<PipelineCache> cache;
+    std::set<std::string> told;
+    Skipped skipped;
+    for (std::uint32_t i = first; i <= last && !interrupted(); ++i) {
+        const RenderOptions frame = frame_of(options, i);
+        const Scene scene = load_scene(frame.scene);
+        check_outputs({scene.inputs.begin(), scene.inputs.end()}, outputs_of(frame), options.hash);
+        tell_warnings(scene, frame.scene, told);
+        const Settings settings = resolve_settings(frame.settings, scene);
+        if (!device) cache.emplace(device.emplace(options.device), options.device.cache);
+        if (is_rendered(frame, scene, settings, device->info())) {
+            skipped.add(i);
+            continue;
+        }
+        skipped.tell(options.quiet);
+        if (!options.quiet)
+            print_message(fmt::format("frame {} of {}..{}, at {:.6g} s", i, first, last, frame.scene.at));
+        const Rendering rendering = render_with_progress(scene, frame, nullptr, {}, *device);
+        if (interrupted()) {
+            print_message(fmt::format("interrupted in frame {}, which is not written", i));
+            break;
+        }
+        tell_and_write(frame, scene, rendering);
+    }
+    skipped.tell(options.quiet);
+    if (device) check_validation(*device);
+}
+
 }  // namespace
 
 void execute(const RenderOptions& options) {
     catch_interrupts();
+    if (options.frames) return render_frames(options);
     const bool keeps_elsewhere = options.resume && !is_same_file(*options.resume, *options.checkpoint);
     // What is gone on from in its place is read first, which tells whether it is a checkpoint.
     const std::string ending = options.resume && !keeps_elsewhere ? ending_of(*options.checkpoint) : std::string();
-    const std::vector<Output> outputs = {{"-o", options.output, ".exr"},
-                                         {"--png", options.png, ".png"},
-                                         {"--stats", options.stats, ".json"},
-                                         {"--checkpoint", options.checkpoint, ending.c_str()}};
+    std::vector<Output> outputs = outputs_of(options);
+    outputs.push_back({"--checkpoint", options.checkpoint, ending.c_str()});
     check_outputs({options.scene.file, options.scene.environment, options.reference,
                    keeps_elsewhere ? options.resume : std::nullopt},
                   outputs, options.hash);
@@ -237,21 +337,9 @@ void execute(const RenderOptions& options) {
             keeper->keep(iterations, take);
         };
     }
-    Rendering rendering =
+    const Rendering rendering =
         render_with_progress(scene, options, measuring ? &*measuring : nullptr, checkpointing, device);
-    print_warnings(rendering.warnings);
-    if (options.hash) {
-        print_result(fmt::format("picture {}\n", hash_text(hash_of(rendering.image))));
-    }
-    if (options.stop_at) print_stop(*options.stop_at, rendering, options.quiet);
-    if (rendering.estimate && !options.quiet) print_estimate(*rendering.estimate);
-    if (options.target) print_target(*options.target, rendering, options.quiet);
-    write_outputs(options, scene, rendering);
-    if (options.verbose) print_table(rendering.report);
-    if (const auto& failure = rendering.failure) {
-        throw Error(failure->code(), fmt::format("{}: {} is the picture after {} iterations", failure->what(),
-                                                 options.output.string(), rendering.report.iterations));
-    }
+    tell_and_write(options, scene, rendering);
     if (keeper) {
         keeper->require_kept();
         if (!options.quiet) print_message("wrote " + options.checkpoint->string());

@@ -435,8 +435,10 @@ private:
             cut_halves(root, width, children);
         }
         const auto list = children.list();
-        const auto leaves = std::ranges::stable_partition(list, [&](const Subtree& c) { return c.is_inner(tree_); });
-        const std::size_t inner = list.size() - leaves.size();
+        // Not that of std::ranges, which clang 14 does not compile.
+        const auto leaves =
+            std::stable_partition(list.begin(), list.end(), [&](const Subtree& c) { return c.is_inner(tree_); });
+        const auto inner = std::size_t(leaves - list.begin());
         const auto first = inner > 0 ? std::uint32_t(nodes.size()) : index;
         nodes.resize(nodes.size() + inner);
         quantise(index, list);

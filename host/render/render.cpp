@@ -51,7 +51,7 @@ CurvePoint measure(Integrator& integrator, const Image& reference) {
 
 Rendering render(const Scene& scene, const Settings& wanted, Device& device, const KeepGoing& keep_going,
                  const Measuring* measuring, const Checkpointing& checkpointing, const OnPassHash& on_hash,
-                 const Target* target) {
+                 const Snapshots& snapshots, const Target* target) {
     assert(!target || wanted.error);
     Rendering result;
     const double setup = wall_now();
@@ -81,6 +81,14 @@ Rendering render(const Scene& scene, const Settings& wanted, Device& device, con
         kept = integrator.completed();
         book();
         checkpointing.keep(kept, [&] { return Checkpoint{result.report, result.curve, integrator.save()}; });
+    };
+    double shown_at = watch.wall();
+    const auto show = [&] {
+        shown_at = watch.wall();
+        book();
+        result.image = integrator.resolve();
+        if (settings.aovs) result.aovs = integrator.aovs();
+        snapshots.show(result);
     };
     CurvePoint latest;
     std::optional<LatestError> error;
@@ -127,6 +135,7 @@ Rendering render(const Scene& scene, const Settings& wanted, Device& device, con
         look();
         going = keep_going({done, settings.iterations, watch.wall(), error, estimate});
         if (checkpointing.keep && watch.wall() - kept_at >= checkpointing.every) watch.off_the_clock(keep);
+        if (snapshots.show && watch.wall() - shown_at >= snapshots.every) watch.off_the_clock(show);
     }
     book();
     if (checkpointing.keep && kept < integrator.completed() && !result.failure) keep();

@@ -79,6 +79,13 @@ struct Rendering {
     std::optional<Error> failure;
 };
 
+/// What becomes of the picture on its way: the rendering so far, with image, report and channels, each time that so
+/// much rendering time has passed.
+struct Snapshots {
+    double every = 0.0;  // s
+    std::function<void(const Rendering&)> show = {};
+};
+
 /// Renders `scene` by the estimator of the settings. Throws Error on a setting out of range (usage), on a scene or
 /// image that does not fit the device (out_of_device_memory), on a lost device (device_lost), on a reference of another
 /// size (usage). Where it is measured, submissions end at snapshots, or with every iteration where it stops at an
@@ -87,9 +94,10 @@ struct Rendering {
 /// the failure, and no checkpoint is kept at the end. From a checkpoint, of the same scene and settings but for their
 /// bounds `iterations` and `seconds`, it goes on as if it had never ended: iterations, seconds, totals and curve count
 /// from the first start. on_hash: a submission is a pass, and the hash of each is told (Integrator::run_hashed); the
-/// picture is the same. With a target the settings must ask for the error.
+/// picture is the same. Snapshots change nothing of it either, and the time that they take is not counted. With a
+/// target the settings must ask for the error.
 Rendering render(const Scene& scene, const Settings& settings, Device& device, const KeepGoing& keep_going,
                  const Measuring* measuring = nullptr, const Checkpointing& checkpointing = {},
-                 const OnPassHash& on_hash = {}, const Target* target = nullptr);
+                 const OnPassHash& on_hash = {}, const Snapshots& snapshots = {}, const Target* target = nullptr);
 
 }  // namespace vkcppm

@@ -14,6 +14,7 @@
 #include "support/hostile/faults.h"
 #include "support/hostile/hostile_input.h"
 #include "support/hostile/mutation.h"
+#include "support/scenes/draco.h"
 #include "support/scenes/everything.h"
 #include "support/scenes/sample_models.h"
 #include "support/scenes/scenes.h"
@@ -91,6 +92,24 @@ TEST(Hostile, MutationsOfSampleModels) {
         test::write_bytes(files.back(), model.file.glb());
     }
     expect_no_misbehaviour(files, 20);
+}
+
+/// Bytes of Draco's data alone, as what is around it is changed above.
+TEST(Hostile, MutationsOfCompressedMeshes) {
+    for (const bool is_sequential : {false, true}) {
+        test::GltfBuilder builder = test::grid(5);
+        test::compress_by_draco(builder, 0, {.sequential = is_sequential, .position_bits = 10});
+        const nlohmann::json view = builder.document["bufferViews"].back();
+        const std::string whole = builder.bytes().substr(view["byteOffset"], view["byteLength"]);
+        for (std::uint32_t seed = 0; seed < 1500; ++seed) {
+            test::GltfBuilder changed = builder;
+            const std::string bytes = test::mutation(whole, seed);
+            if (bytes.empty()) continue;
+            changed.document["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"]["bufferView"] =
+                changed.view(std::vector<char>(bytes.begin(), bytes.end()));
+            ASSERT_EQ(misbehaviour(changed.glb()), "") << "mutation " << seed << (is_sequential ? " in order" : "");
+        }
+    }
 }
 
 TEST(Hostile, MutationsOfHostileFiles) {

@@ -231,7 +231,19 @@ std::string jpeg_header(std::uint16_t width, std::uint16_t height) {
            "\xff\xda" + word(8) + std::string("\1\1\0\0\x3f\0", 6);
 }
 
+/// A lossless WebP of that size and of one colour, in a few bytes.
+std::string flat_webp(std::uint32_t width, std::uint32_t height) {
+    std::string bytes("RIFF\x1a\0\0\0WEBPVP8L\x0e\0\0\0\x2f", 21);
+    // Signature, then 14 bits of each side less one; neither alpha nor transforms, one code of one symbol a channel.
+    const std::uint32_t sides = (width - 1) | (height - 1) << 14;
+    for (int shift = 0; shift < 32; shift += 8) bytes += char(sides >> shift);
+    return bytes + std::string("\x88\x88\x08\0\0\0\0\0\0", 9);
+}
+
 TEST(HostileFile, PicturesThatClaimMoreThanTheyHold) {
+    EXPECT_EQ(test::load_text(textured(flat_webp(4096, 4096))).images.at(0).size, (Extent{4096, 4096}));
+    expect_bad_scene(textured(flat_webp(16383, 16383)),
+                     {"size of images[0] is 16383 x 16383; its 34 bytes hold 17057920 texels at most"});
     expect_bad_scene(textured(png_header(16385, 1)),
                      {"size of images[0] is 16385 x 1; the limit is 16384 texels a side"});
     expect_bad_scene(textured(png_header(16384, 16384)),

@@ -638,6 +638,42 @@ TEST(Gltf, ReadsTheRangeOfALight) {
     }
 }
 
+/// A sun of 1366 and no other light, as a file of `generator`.
+Scene load_sun(const char* generator, PunctualUnits units) {
+    GltfBuilder builder = test::one_triangle();
+    builder.document["asset"]["generator"] = generator;
+    builder.document["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "directional"}, {"intensity", 1366}}};
+    builder.document["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+    const test::TemporaryFolder folder;
+    test::write_bytes(folder / "scene.gltf", builder.gltf());
+    GltfOptions options;
+    options.punctual_units = units;
+    return load_gltf(folder / "scene.gltf", options);
+}
+
+TEST(Gltf, LightsAreInTheUnitsThatAreAskedForOrOfTheExporter) {
+    const glm::vec3 watts(2.0f), lux(1366.0f);  // 683 lm/W
+    const char* blender = "Khronos glTF Blender I/O v5.0.21";
+    const auto intensity = [](const char* generator, PunctualUnits units) {
+        const Scene scene = load_sun(generator, units);
+        EXPECT_EQ(warnings_with(scene, {"candela and lux", "divided by 683", "--punctual-units"}),
+                  units == PunctualUnits::by_generator && scene.lights.at(0).intensity.x == 2.0f ? 1 : 0)
+            << all_warnings(scene);
+        return scene.lights.at(0).intensity;
+    };
+    for (const char* generator : {blender, "Khronos glTF Blender I/O v3.4.50", "Khronos glTF Blender I/O v3.10"}) {
+        EXPECT_EQ(intensity(generator, PunctualUnits::by_generator), watts) << generator;
+    }
+    for (const char* generator : {"", "Khronos glTF Blender I/O v3.3.27", "Khronos glTF Blender I/O v1.3.48",
+                                  "Khronos glTF Blender I/O", "Khronos glTF Blender I/O vx", "another"}) {
+        EXPECT_EQ(intensity(generator, PunctualUnits::by_generator), lux) << generator;
+    }
+    EXPECT_EQ(intensity(blender, PunctualUnits::radiometric), lux);
+    EXPECT_EQ(intensity("another", PunctualUnits::photometric), watts);
+    EXPECT_NE(load_sun("another", PunctualUnits::photometric).hash,
+              load_sun("another", PunctualUnits::by_generator).hash);
+}
+
 TEST(Gltf, ClampsConesWithAWarning) {
     const Scene wide = load_light({{"type", "spot"}, {"spot", {{"outerConeAngle", 2.0}}}}, json::object());
     EXPECT_EQ(wide.lights[0].outer_cone, std::numbers::pi / 2);

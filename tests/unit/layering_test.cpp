@@ -51,6 +51,8 @@ const std::vector<Confined> confined = {
     {R"((OpenEXR/|Imath/)?(Imf|Imath|Iex|half).*\.h)", R"(io/.*)"},
     {R"(png\.h)", R"(io/.*|scene/gltf/picture\.cpp)"},
     {R"(turbojpeg\.h)", R"(scene/gltf/picture\.cpp)"},
+    {R"(webp/.*)", R"(scene/gltf/picture\.cpp)"},
+    {R"(draco/.*)", R"(scene/gltf/draco\.cpp)"},
     {R"(meshoptimizer\.h)", R"(scene/gltf/meshopt\.cpp)"},
     {R"(CLI/.*)", R"(app/.*)"},
 };

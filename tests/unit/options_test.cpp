@@ -97,6 +97,12 @@ TEST(Options, EveryOptionReachesItsSetting) {
                                                 "sky.hdr",
                                                 "--thin-glass",
                                                 "solid",
+                                                "--set",
+                                                "glass:ior=1.3",
+                                                "--punctual-units",
+                                                "photometric",
+                                                "--set",
+                                                "0:dispersion=2",
                                                 "--aperture",
                                                 "0.01",
                                                 "--focus-distance",
@@ -111,6 +117,10 @@ TEST(Options, EveryOptionReachesItsSetting) {
     EXPECT_EQ(options.stop_at->value, 0.0035);
     EXPECT_EQ(options.scene.environment, "sky.hdr");
     EXPECT_EQ(options.scene.thin_glass, ThinGlass::solid);
+    ASSERT_EQ(options.scene.set.size(), 2u);
+    EXPECT_EQ(options.scene.set[0].text(), "glass:ior=1.3");
+    EXPECT_EQ(options.scene.set[1].text(), "0:dispersion=2");
+    EXPECT_EQ(options.scene.punctual_units, PunctualUnits::photometric);
     EXPECT_EQ(options.settings.aperture, 0.01);
     EXPECT_EQ(options.settings.focus_distance, 2.5);
     EXPECT_EQ(options.output, "o.exr");

@@ -1,4 +1,4 @@
-// PNG and JPEG files to texels: every layout of the formats, and what is broken.
+// PNG, JPEG and WebP files to texels: every layout of the formats, and what is broken.
 
 #include "scene/gltf/picture.h"
 
@@ -102,11 +102,50 @@ TEST(Picture, ReadsAJpeg) {
     for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(int(gray[c]), c < 3 ? 77 : 255, 1) << "channel " << c;
 }
 
+TEST(Picture, ReadsAWebp) {
+    Texels rgba;  // halves on blocks of the transform, the lower half transparent
+    for (int i = 0; i < 16 * 32; ++i) {
+        const auto half =
+            i < 16 * 16 ? std::array<std::uint8_t, 4>{250, 20, 30, 255} : std::array<std::uint8_t, 4>{10, 40, 240, 7};
+        rgba.insert(rgba.end(), half.begin(), half.end());
+    }
+    const std::string lossless = test::encode_webp({16, 32}, rgba);
+    EXPECT_TRUE(is_webp(bytes_of(lossless)));
+    EXPECT_EQ(picture_size(bytes_of(lossless)), (Extent{16, 32}));
+    EXPECT_EQ(decode(lossless), rgba);
+    const std::string lossy = test::encode_webp({16, 32}, rgba, false);
+    EXPECT_EQ(picture_size(bytes_of(lossy)), (Extent{16, 32}));
+    const Texels texels = decode(lossy);
+    ASSERT_EQ(texels.size(), rgba.size());
+    for (std::size_t y : {2, 8, 24, 29}) {  // colours are stored at half the size, and mix where the halves meet
+        for (std::size_t c = 0; c < 4; ++c) {
+            const std::size_t i = 4 * (16 * y + 8) + c;
+            EXPECT_NEAR(int(texels[i]), int(rgba[i]), 6) << "row " << y << " channel " << c;
+        }
+    }
+}
+
+TEST(Picture, RefusesAWebpThatMoves) {
+    // VP8X (its second flag says that it moves) of 1 x 1, and nothing behind it.
+    const std::string moving("RIFF\x16\0\0\0WEBPVP8X\x0a\0\0\0\2\0\0\0\0\0\0\0\0\0", 30);
+    EXPECT_EQ(refusal(moving), "a WebP that moves is no texture");
+}
+
 TEST(Picture, RefusesEveryTruncationOfTheTexels) {
     Texels noise;
     for (unsigned i = 0; i < 3 * 32 * 32; ++i) noise.push_back(std::uint8_t(i * i * 2654435761u >> 13));
     const std::string png = test::encode_png({32, 32}, {PNG_COLOR_TYPE_RGB, 8}, noise);
     const std::string jpeg = test::encode_jpeg({32, 32}, noise);
+    Texels opaque;
+    for (std::size_t i = 0; i < noise.size(); i += 3) {
+        opaque.insert(opaque.end(), {noise[i], noise[i + 1], noise[i + 2], 255});
+    }
+    for (const bool is_lossless : {false, true}) {
+        const std::string webp = test::encode_webp({32, 32}, opaque, is_lossless);
+        for (std::size_t size = 0; size + 2 < webp.size(); size += 7) {
+            EXPECT_NE(refusal(webp.substr(0, size)), "") << "the first " << size << " of " << webp.size() << " of WebP";
+        }
+    }
     const std::size_t png_trailer = 12 + 4 + 4;  // IEND, then the checksum of the texels and that of zlib
     for (std::size_t size = 0; size + png_trailer < png.size(); size += 7) {
         EXPECT_NE(refusal(png.substr(0, size)), "") << "the first " << size << " of " << png.size() << " bytes of PNG";
@@ -120,14 +159,18 @@ TEST(Picture, SaysWhyAFileIsBroken) {
     std::string png = test::one_texel_png({1, 2, 3, 4});
     png[png.find("IDAT") + 6] ^= 0x55;
     EXPECT_TRUE(refusal(png).starts_with("broken PNG: ")) << refusal(png);
-    EXPECT_EQ(refusal("GIF89a, or whatever it is"), "neither PNG nor JPEG");
-    EXPECT_EQ(refusal(""), "neither PNG nor JPEG");
+    EXPECT_EQ(refusal("GIF89a, or whatever it is"), "neither PNG, JPEG nor WebP");
+    EXPECT_EQ(refusal(""), "neither PNG, JPEG nor WebP");
     EXPECT_TRUE(refusal("\xff\xd8\xff\xe0 nothing more").starts_with("broken JPEG: "));
+    EXPECT_EQ(refusal("RIFF....WEBPVP8 "), "broken WebP: the data ends early");
+    std::string webp = test::encode_webp({1, 1}, {1, 2, 3, 4});
+    webp[webp.find("VP8L") + 8] = 'x';  // its signature
+    EXPECT_EQ(refusal(webp), "broken WebP: wrong data");
 }
 
 TEST(Picture, KnowsTheFormatsOfExtensions) {
     EXPECT_EQ(foreign_format(bytes_of("\xabKTX 20\xbb\r\n\x1a\n")), "KTX2");
-    EXPECT_EQ(foreign_format(bytes_of("RIFF....WEBPVP8 ")), "WebP");
+    EXPECT_EQ(foreign_format(bytes_of("RIFF....WEBPVP8 ")), "");
     EXPECT_EQ(foreign_format(bytes_of("RIFF....WAVE")), "");
     EXPECT_EQ(foreign_format(bytes_of("DDS |")), "DDS");
     EXPECT_EQ(foreign_format(bytes_of(test::one_texel_png({1, 2, 3, 4}))), "");

@@ -107,6 +107,8 @@ TEST(SettingsTable, NamesAreThoseOfNothingElse) {
                                    "animation",
                                    "at",
                                    "variant",
+                                   "set",
+                                   "punctual_units",
                                    "environment_rotation",
                                    "environment_strength"};
     setting::for_each([&](const auto& row) { EXPECT_TRUE(names.insert(json_name(row.name)).second) << row.name; });

@@ -20,6 +20,11 @@ GltfAccessors::GltfAccessors(const GltfFile& file, const tinygltf::Model& model,
 
 std::size_t GltfAccessors::count(int accessor) const { return model_.accessors[accessor].count; }
 
+std::string GltfAccessors::name(int accessor) const {
+    const std::size_t own = model_.accessors.size() - file_.decoded.size(), i = std::size_t(accessor);
+    return fmt::format("accessors[{}]", i < own ? i : file_.decoded[i - own]);
+}
+
 int GltfAccessors::components(int accessor) const {
     return tinygltf::GetNumComponentsInType(model_.accessors[accessor].type);
 }
@@ -49,7 +54,7 @@ std::vector<double> GltfAccessors::numbers(int accessor, int components, std::st
 GltfAccessors::Indices GltfAccessors::indices(int accessor) {
     const AccessorView source = view(accessor, 1, "indices");
     if (!is_unsigned(source.type)) {
-        bad_scene(file_.name, fmt::format("accessors[{}].componentType", accessor), fmt::to_string(int(source.type)),
+        bad_scene(file_.name, name(accessor) + ".componentType", fmt::to_string(int(source.type)),
                   "not a type of indices");
     }
     return {read_indices(source), UINT32_MAX >> (32 - 8 * component_size(source.type))};
@@ -74,7 +79,7 @@ ElementBytes GltfAccessors::elements(int view, std::size_t offset, std::size_t c
 /// The checked view of an accessor of `components` (1: SCALAR, 3: VEC3) that serves as `use`.
 AccessorView GltfAccessors::view(int accessor, int components, std::string_view use) {
     const tinygltf::Accessor& source = model_.accessors[accessor];
-    const std::string object = fmt::format("accessors[{}]", accessor);
+    const std::string object = name(accessor);
     AccessorView view;
     view.count = source.count;
     view.type = ComponentType(source.componentType);

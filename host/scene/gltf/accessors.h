@@ -33,6 +33,9 @@ public:
 
     std::size_t count(int accessor) const;
 
+    /// As the file has it, e.g. "accessors[3]".
+    std::string name(int accessor) const;
+
     /// Components of an element, e.g. 3 for VEC3.
     int components(int accessor) const;
 

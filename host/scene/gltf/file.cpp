@@ -249,8 +249,10 @@ GltfFile read_gltf_file(const std::filesystem::path& path, const std::optional<s
     file.document = parse_json(container.json, file.name);
     check_version(file.document, file.name);
     if (const auto missing = unsupported_extensions(file.document, "extensionsRequired", file.name); !missing.empty()) {
-        bad_scene(file.name, "extensionsRequired", fmt::format("{}", fmt::join(missing, ", ")),
-                  "this program lacks it");
+        const bool is_basisu = std::ranges::find(missing, "\"KHR_texture_basisu\"") != missing.end();
+        bad_scene(
+            file.name, "extensionsRequired", fmt::format("{}", fmt::join(missing, ", ")),
+            is_basisu ? "this program lacks it: export its textures as PNG, JPEG or WebP" : "this program lacks it");
     }
     check_gltf_schema(file.document, file.name);
 

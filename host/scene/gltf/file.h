@@ -29,6 +29,7 @@ struct GltfFile {
     std::size_t bytes = 0;                     // of the file and of the external buffers that were read
     std::uint64_t hash = 0;                    // FNV-1a of the file's bytes, then of each external buffer's
     std::vector<std::filesystem::path> files;  // itself and all that it names, whether they are there and read or not
+    std::vector<std::size_t> decoded;          // of the document's last accessors, which Draco filled: the file's own
 };
 
 /// Reads the file, tells .gltf from .glb by its first bytes, and resolves every buffer: data URI, file below `root` (by

@@ -11,6 +11,7 @@
 #include "scene/gltf/accessors.h"
 #include "scene/gltf/animation.h"
 #include "scene/gltf/cameras.h"
+#include "scene/gltf/draco.h"
 #include "scene/gltf/file.h"
 #include "scene/gltf/images.h"
 #include "scene/gltf/lights.h"
@@ -66,12 +67,16 @@ void warn_of_ignored_parts(const GltfFile& file, const GltfOptions& options, War
     }
 }
 
-/// The hash of what the file is read as: another pose or variant is another scene.
+/// The hash of what the file is read as: another pose, variant or material is another scene.
 std::uint64_t hash_of(const GltfOptions& options, std::uint64_t hash) {
     if (!options.animation.empty()) {
         hash = fnv1a_of(fmt::format("--animation {} --at {}", options.animation, options.at), hash);
     }
     if (!options.variant.empty()) hash = fnv1a_of("--variant " + options.variant, hash);
+    for (const MaterialChange& change : options.set) hash = fnv1a_of("--set " + change.text(), hash);
+    if (options.punctual_units != PunctualUnits::by_generator) {
+        hash = fnv1a_of(fmt::format("--punctual-units {}", name_of(options.punctual_units)), hash);
+    }
     return hash;
 }
 
@@ -96,8 +101,12 @@ Scene read_scene(GltfFile& file, tinygltf::Model& model, const GltfOptions& opti
     for (const PlacedNode& node : nodes) {
         if (auto camera = read_camera(file, model, node, warnings)) scene.cameras.push_back(std::move(*camera));
     }
+    const bool has_lights = std::ranges::any_of(visible, [&](const PlacedNode& node) {
+        return model.nodes[node.index].extensions.contains("KHR_lights_punctual");
+    });
+    const double per_watt = has_lights ? lumens_per_watt(file, options.punctual_units, warnings) : 1.0;
     for (const PlacedNode& node : visible) {
-        if (auto light = read_light(file, model, node, warnings)) scene.lights.push_back(std::move(*light));
+        if (auto light = read_light(file, model, node, per_watt, warnings)) scene.lights.push_back(std::move(*light));
     }
     if (scene.cameras.empty()) {
         warnings.add("there is no camera, one that frames it is used", "the scene");
@@ -113,6 +122,8 @@ Scene read_scene(GltfFile& file, tinygltf::Model& model, const GltfOptions& opti
 Scene load_gltf(const std::filesystem::path& path, const GltfOptions& options) {
     try {
         GltfFile file = read_gltf_file(path, options.root);
+        decode_draco(file);
+        change_materials(file, options.set);
         tinygltf::Model model = parse_model(file);
         Scene scene = read_scene(file, model, options);
         scene.file = path;

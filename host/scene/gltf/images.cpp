@@ -54,7 +54,9 @@ std::optional<std::uint32_t> GltfImages::index(std::size_t image) {
 std::optional<std::uint32_t> GltfImages::add(Source source) {
     const auto& [name, object, own_bytes, bytes] = source;
     if (const std::string_view format = foreign_format(bytes); !format.empty()) {
-        warnings_.add(fmt::format("its textures are ignored, this program lacks {}", format), object);
+        warnings_.add(
+            fmt::format("its textures are ignored, this program lacks {}: export PNG, JPEG or WebP instead", format),
+            object);
         return std::nullopt;
     }
     try {
@@ -64,10 +66,10 @@ std::optional<std::uint32_t> GltfImages::add(Source source) {
                       fmt::format("the limit is {} texels a side", max_image_side));
         }
         // Before there is memory for them: a header claims any size.
-        if (size.pixels() > max_texels_per_byte * bytes.size()) {
-            bad_scene(
-                file_.name, "the size of " + object, fmt::format("{} x {}", size.width, size.height),
-                fmt::format("its {} bytes hold {} texels at most", bytes.size(), max_texels_per_byte * bytes.size()));
+        const std::size_t most = max_texels_per_byte * bytes.size() + (is_webp(bytes) ? max_flat_texels : 0);
+        if (size.pixels() > most) {
+            bad_scene(file_.name, "the size of " + object, fmt::format("{} x {}", size.width, size.height),
+                      fmt::format("its {} bytes hold {} texels at most", bytes.size(), most));
         }
         bytes_ += bytes.size();
         check_total(texels_ += size.pixels(), max_texels(bytes_), "texels, with those of " + object, file_.name);

@@ -22,7 +22,7 @@ public:
 
     /// The place of images[i] among those to decode, the next one on its first use; images with one source share it.
     /// None, with a warning, where its file is not there, lies outside of the file's root or is in a format that only
-    /// an extension allows (KTX2, WebP, DDS): the factor alone is a picture that still says something.
+    /// an extension allows (KTX2, DDS): the factor alone is a picture that still says something.
     /// Throws Error(bad_scene) where the image has no source or two, is broken, or is too large, alone or with the
     /// others.
     std::optional<std::uint32_t> index(std::size_t image);

@@ -1,8 +1,11 @@
 #include "scene/gltf/lights.h"
 
 #include <algorithm>
+#include <array>
 #include <cfloat>
+#include <charconv>
 #include <numbers>
+#include <system_error>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
@@ -32,10 +35,43 @@ void read_cone(const tinygltf::SpotLight& spot, const std::string& object, Punct
         clamped(spot.innerConeAngle, 0.0, widest_inner * light.outer_cone, object + ".spot.innerConeAngle", warnings);
 }
 
+/// Whether a file is of Blender's exporter of version 3.4 or later, which multiplies watts by 683 unless it is told not
+/// to.
+bool is_by_watts_of_blender(const nlohmann::json& generator) {
+    constexpr std::string_view name = "Khronos glTF Blender I/O v";
+    if (!generator.is_string() || !generator.get_ref<const std::string&>().starts_with(name)) return false;
+    std::string_view version = std::string_view(generator.get_ref<const std::string&>()).substr(name.size());
+    std::array<int, 2> numbers{};
+    for (int& number : numbers) {
+        const auto [end, error] = std::from_chars(version.data(), version.data() + version.size(), number);
+        if (error != std::errc()) return false;
+        version.remove_prefix(std::min<std::size_t>(version.size(), std::size_t(end - version.data()) + 1));
+    }
+    return numbers >= std::array{3, 4};
+}
+
 }  // namespace
 
+std::string_view name_of(PunctualUnits units) {
+    return units == PunctualUnits::radiometric   ? "radiometric"
+           : units == PunctualUnits::photometric ? "photometric"
+                                                 : "auto";
+}
+
+double lumens_per_watt(const GltfFile& file, PunctualUnits units, Warnings& warnings) {
+    constexpr double luminous_efficacy = 683.0;  // lm/W: of green of 555 nm, and the exporter's of any light
+    if (units == PunctualUnits::radiometric) return 1.0;
+    if (units == PunctualUnits::photometric) return luminous_efficacy;
+    if (!is_by_watts_of_blender(file.document["asset"].value("generator", nlohmann::json()))) return 1.0;
+    warnings.add(fmt::format("taken for candela and lux, as Blender's exporter makes them of watts, and divided by {}; "
+                             "--punctual-units says otherwise",
+                             luminous_efficacy),
+                 "the intensities of its punctual lights");
+    return luminous_efficacy;
+}
+
 std::optional<PunctualLight> read_light(const GltfFile& file, const tinygltf::Model& model, const PlacedNode& placed,
-                                        Warnings& warnings) {
+                                        double per_watt, Warnings& warnings) {
     const int index = placed.index;
     const glm::dmat4& to_world = placed.to_world;
     const tinygltf::Node& node = model.nodes[index];
@@ -50,7 +86,8 @@ std::optional<PunctualLight> read_light(const GltfFile& file, const tinygltf::Mo
                                          : PunctualLight::Kind::directional;
     light.name = source.name.empty() ? node.name : source.name;
     const glm::dvec3 color = source.color.empty() ? glm::dvec3(1.0) : glm::make_vec3(source.color.data());
-    light.intensity = emitted(color, source.intensity, object + ".color", object + ".intensity", file.name, warnings);
+    light.intensity =
+        emitted(color, source.intensity / per_watt, object + ".color", object + ".intensity", file.name, warnings);
     light.position = glm::dvec3(to_world[3]);
     if (light.kind != PunctualLight::Kind::point) {
         light.direction = unit_or_zero(-glm::dvec3(to_world[2]));

@@ -2,6 +2,7 @@
 // The punctual lights of a glTF file (KHR_lights_punctual).
 
 #include <optional>
+#include <string_view>
 
 #include "scene/gltf/file.h"
 #include "scene/gltf/nodes.h"
@@ -10,9 +11,20 @@
 
 namespace vkcppm {
 
+/// What the intensities of a file's lights are: W/sr and W/m^2, candela and lux as KHR_lights_punctual says, or the
+/// latter where Blender's exporter wrote it, which makes them of watts, and the former elsewhere.
+enum class PunctualUnits { radiometric, photometric, by_generator };
+
+/// The words of --punctual-units.
+std::string_view name_of(PunctualUnits units);
+
+/// By what the intensities of a file are divided to be radiometric; a warning says where the file decided it.
+double lumens_per_watt(const GltfFile& file, PunctualUnits units, Warnings& warnings);
+
 /// The light of a node, in the world; none where it has none or, with a warning, points nowhere.
-/// Throws Error(bad_scene) where its intensity or its cone is out of range.
+/// Throws Error(bad_scene) where its intensity or its cone is out of range. Its
+/// intensity is divided by `per_watt`.
 std::optional<PunctualLight> read_light(const GltfFile& file, const tinygltf::Model& model, const PlacedNode& placed,
-                                        Warnings& warnings);
+                                        double per_watt, Warnings& warnings);
 
 }  // namespace vkcppm

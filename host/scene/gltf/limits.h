@@ -26,10 +26,13 @@ constexpr Expansion max_primitives{256, std::size_t(1) << 24};   // of all insta
 constexpr Expansion max_instances{256, std::size_t(1) << 24};    // of meshes
 constexpr Expansion max_read_vectors{16, std::size_t(1) << 27};  // of all accessors together
 constexpr Expansion max_decoded_bytes{256, max_gltf_bytes};      // of all compressed bufferViews
+constexpr Expansion max_draco_bytes{1024, max_gltf_bytes};       // of all that KHR_draco_mesh_compression decodes to
 constexpr std::size_t max_image_side = 16384;                    // texels
 constexpr std::size_t max_texels_per_byte = 8256;                // of an image: Deflate's 1032 to 1, of 1-bit texels
 constexpr double max_coordinate = FLT_MAX;                       // m; its square is finite in double
 constexpr double max_uv = 1 << 24;  // of texture coordinates and their transform: float has no fraction beyond
+
+constexpr std::size_t max_flat_texels = std::size_t(1) << 24;  // more of a WebP, whose flat parts take no bytes at all
 
 /// Texels of all images together: 2^26, and of larger files 64 for each of their bytes, up to 2^29.
 constexpr std::size_t max_texels(std::size_t bytes) {

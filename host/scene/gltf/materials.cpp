@@ -144,12 +144,14 @@ private:
         }
         const auto index = info["index"].get<std::size_t>();
         const json& source = file_.document["textures"][index];
-        if (!source.contains("source")) {
-            warnings_.add("the texture is ignored, it has no PNG or JPEG as its source",
+        const json& webp = object_or_empty(object_or_empty(source, "extensions"), "EXT_texture_webp");
+        const json& named = webp.contains("source") ? webp : source;
+        if (!named.contains("source")) {
+            warnings_.add("the texture is ignored, it has no PNG, JPEG or WebP as its source: export one of them",
                           fmt::format("textures[{}] ({})", index, member(name)));
             return std::nullopt;
         }
-        const std::optional<std::uint32_t> image = images_.index(source["source"].get<std::size_t>());
+        const std::optional<std::uint32_t> image = images_.index(named["source"].get<std::size_t>());
         if (!image) return std::nullopt;
 
         Texture texture;

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <png.h>
 #include <turbojpeg.h>
+#include <webp/decode.h>
 
 namespace vkcppm {
 
@@ -26,7 +27,7 @@ bool starts_with(Bytes bytes, std::string_view signature) {
 bool is_png(Bytes bytes) { return starts_with(bytes, "\x89PNG\r\n\x1a\n"); }
 bool is_jpeg(Bytes bytes) { return starts_with(bytes, "\xff\xd8\xff"); }
 
-[[noreturn]] void refuse_format() { throw std::runtime_error("neither PNG nor JPEG"); }
+[[noreturn]] void refuse_format() { throw std::runtime_error("neither PNG, JPEG nor WebP"); }
 
 /// libpng's state, which goes with its owner even where that one's constructor throws.
 struct PngState {
@@ -139,11 +140,46 @@ private:
     int width_ = 0, height_ = 0;
 };
 
+class WebpReader {
+public:
+    explicit WebpReader(Bytes bytes) : bytes_(bytes) {
+        check(WebPGetFeatures(bytes_.data(), bytes_.size(), &features_));
+        if (features_.has_animation) throw std::runtime_error("a WebP that moves is no texture");
+    }
+
+    Extent size() const { return {std::uint32_t(features_.width), std::uint32_t(features_.height)}; }
+
+    std::vector<std::uint8_t> rgba() {
+        std::vector<std::uint8_t> texels(4 * size().pixels());
+        WebPDecoderConfig config;
+        if (!WebPInitDecoderConfig(&config)) throw std::runtime_error("libwebp is of another version");
+        config.output.colorspace = MODE_RGBA;
+        config.output.is_external_memory = 1;
+        config.output.u.RGBA = {texels.data(), 4 * features_.width, texels.size()};
+        check(WebPDecode(bytes_.data(), bytes_.size(), &config));
+        return texels;
+    }
+
+private:
+    void check(VP8StatusCode status) {
+        if (status == VP8_STATUS_OUT_OF_MEMORY) throw std::bad_alloc();
+        if (status == VP8_STATUS_OK) return;
+        const bool ends_early = status == VP8_STATUS_NOT_ENOUGH_DATA || status == VP8_STATUS_SUSPENDED;
+        throw std::runtime_error(fmt::format("broken WebP: {}", ends_early ? "the data ends early" : "wrong data"));
+    }
+
+    Bytes bytes_;
+    WebPBitstreamFeatures features_{};
+};
+
 }  // namespace
+
+bool is_webp(Bytes bytes) {
+    return starts_with(bytes, "RIFF") && bytes.size() >= 12 && starts_with(bytes.subspan(8), "WEBP");
+}
 
 std::string_view foreign_format(Bytes bytes) {
     if (starts_with(bytes, "\xabKTX 20\xbb")) return "KTX2";
-    if (starts_with(bytes, "RIFF") && bytes.size() >= 12 && starts_with(bytes.subspan(8), "WEBP")) return "WebP";
     if (starts_with(bytes, "DDS ")) return "DDS";
     return {};
 }
@@ -151,12 +187,14 @@ std::string_view foreign_format(Bytes bytes) {
 Extent picture_size(Bytes bytes) {
     if (is_png(bytes)) return PngReader(bytes).size();
     if (is_jpeg(bytes)) return JpegReader(bytes).size();
+    if (is_webp(bytes)) return WebpReader(bytes).size();
     refuse_format();
 }
 
 std::vector<std::uint8_t> decode_picture(Bytes bytes) {
     if (is_png(bytes)) return PngReader(bytes).rgba();
     if (is_jpeg(bytes)) return JpegReader(bytes).rgba();
+    if (is_webp(bytes)) return WebpReader(bytes).rgba();
     refuse_format();
 }
 

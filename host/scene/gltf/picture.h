@@ -1,5 +1,5 @@
 #pragma once
-// Pictures in PNG and JPEG files, as textures hold them: bytes in, 8 bits a channel out.
+// Pictures in PNG, JPEG and WebP files, as textures hold them: bytes in, 8 bits a channel out.
 
 #include <cstdint>
 #include <span>
@@ -10,11 +10,14 @@
 
 namespace vkcppm {
 
+/// Whether the bytes begin like a WebP: one of a single colour takes as many as it likes to have texels.
+bool is_webp(std::span<const std::uint8_t> bytes);
+
 /// The name of the format where it is one of those that glTF extensions allow and this program lacks, else empty.
 std::string_view foreign_format(std::span<const std::uint8_t> bytes);
 
 /// Width and height by the header alone, before memory for the texels is needed.
-/// Throws std::runtime_error with the reason where the bytes are neither PNG nor JPEG or the header is broken.
+/// Throws std::runtime_error with the reason where the bytes are none of the three or the header is broken.
 Extent picture_size(std::span<const std::uint8_t> bytes);
 
 /// [4 x width x height] red, green, blue, alpha; first row on top. Grey, palettes and a transparent colour are

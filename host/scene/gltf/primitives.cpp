@@ -99,7 +99,7 @@ LocalPrimitive PrimitiveReader::read_new(const tinygltf::Primitive& source, cons
     primitive.positions = morphed(at_rest, source, "POSITION", weights, object);
     const bool is_morphed = primitive.positions != at_rest;
     if (is_morphed || finite_.insert(positions).second) {
-        check_finite(*primitive.positions, fmt::format("accessors[{}]", positions), object);
+        check_finite(*primitive.positions, accessors_.name(positions), object);
     }
     primitive.normals = morphed(attribute<3>(source, "NORMAL", vertices, object), source, "NORMAL", weights, object);
     for (std::size_t set = 0; set < 2; ++set) {
@@ -124,7 +124,7 @@ std::optional<int> PrimitiveReader::accessor_of(const tinygltf::Primitive& sourc
 void PrimitiveReader::check_count(int accessor, std::size_t vertices, const std::string& use) const {
     const std::size_t count = accessors_.count(accessor);
     if (count == vertices) return;
-    bad_scene(file_.name, fmt::format("accessors[{}].count ({})", accessor, use), fmt::to_string(count),
+    bad_scene(file_.name, fmt::format("{}.count ({})", accessors_.name(accessor), use), fmt::to_string(count),
               fmt::format("POSITION has {}", vertices));
 }
 
@@ -242,7 +242,7 @@ SharedVectors<2> PrimitiveReader::uv(const tinygltf::Primitive& source, std::siz
     const auto is_usable = [](const glm::dvec2& uv) { return std::abs(uv.x) <= max_uv && std::abs(uv.y) <= max_uv; };
     if (!std::ranges::all_of(*cached->second, is_usable)) {
         warnings_.add(fmt::format("texture coordinates beyond {} or no numbers, (0, 0) is taken", max_uv),
-                      fmt::format("accessors[{}]", *accessor));
+                      accessors_.name(*accessor));
         auto mended = std::make_shared<std::vector<glm::dvec2>>(*cached->second);
         std::ranges::replace_if(*mended, std::not_fn(is_usable), glm::dvec2(0.0));
         cached->second = mended;
@@ -263,7 +263,7 @@ SharedVectors<4> PrimitiveReader::colors(const tinygltf::Primitive& source, std:
     } else {
         *colors = *accessors_.vectors<4>(*index, "COLOR_0");
     }
-    const std::string accessor = fmt::format("accessors[{}]", *index);
+    const std::string accessor = accessors_.name(*index);
     for (std::size_t i = 0; i < colors->size(); ++i) {
         glm::dvec4& color = (*colors)[i];
         for (int c = 0; c < 4; ++c) {
@@ -291,7 +291,7 @@ std::vector<std::uint32_t> PrimitiveReader::corner_indices(const tinygltf::Primi
     auto [indices, restart] = accessors_.indices(source.indices);
     for (std::size_t i = 0; i < indices.size(); ++i) {
         if (indices[i] < vertices && indices[i] != restart) continue;
-        bad_scene(file_.name, fmt::format("accessors[{}] element {} (indices of {})", source.indices, i, object),
+        bad_scene(file_.name, fmt::format("{} element {} (indices of {})", accessors_.name(source.indices), i, object),
                   fmt::to_string(indices[i]),
                   fmt::format("POSITION has {} vertices, and {} is no index", vertices, restart));
     }

@@ -17,7 +17,20 @@ namespace {
 
 using nlohmann::json;
 
-enum class Kind { boolean, string, number, numbers, integer, index, indices, index_map, index_maps, object, objects };
+enum class Kind {
+    boolean,
+    string,
+    number,
+    numbers,
+    integer,
+    integer_map,
+    index,
+    indices,
+    index_map,
+    index_maps,
+    object,
+    objects
+};
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double int_limit = std::numeric_limits<std::int32_t>::max();  // tinygltf holds these members as int
@@ -31,8 +44,8 @@ struct Field {
     std::span<const Field> fields{};              // object, objects: the members
     const char* collection = "";                  // index, indices, index_map(s): JSON pointer to the array referred to
     std::size_t length = 0;                       // numbers: how many; 0 is any number of them
-    double minimum = -infinity;                   // integer
-    double maximum = infinity;                    // integer
+    double minimum = -infinity;                   // integer, integer_map
+    double maximum = infinity;                    // integer, integer_map
     unsigned multiple = 1;                        // integer: a multiple of this
     std::span<const std::string_view> choices{};  // string
     std::span<const int> values{};                // integer: any where empty
@@ -79,8 +92,9 @@ constexpr int min_filters[] = {9728, 9729, 9984, 9985, 9986, 9987};
 constexpr int wraps[] = {10497, 33071, 33648};
 
 constexpr std::string_view supported_extensions[] = {
-    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_lights_punctual", "KHR_materials_variants",
-    "KHR_mesh_quantization",   "KHR_meshopt_compression", "KHR_node_visibility", "KHR_texture_transform",
+    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp",      "KHR_draco_mesh_compression",
+    "KHR_lights_punctual",     "KHR_materials_variants",  "KHR_mesh_quantization", "KHR_meshopt_compression",
+    "KHR_node_visibility",     "KHR_texture_transform",
 #define EXTENSION(name, ...) #name,
 #include "scene/material_extensions.h"
 };
@@ -146,7 +160,12 @@ constexpr Field variant_mapping_fields[] = {
     index("material", "/materials", true),
 };
 constexpr Field variant_mappings_fields[] = {objects("mappings", variant_mapping_fields, true)};
-constexpr Field primitive_extension_fields[] = {object("KHR_materials_variants", variant_mappings_fields)};
+constexpr Field draco_fields[] = {
+    index("bufferView", "/bufferViews", true),
+    {.name = "attributes", .kind = Kind::integer_map, .required = true, .minimum = 0, .maximum = UINT32_MAX},
+};
+constexpr Field primitive_extension_fields[] = {object("KHR_materials_variants", variant_mappings_fields),
+                                                object("KHR_draco_mesh_compression", draco_fields)};
 
 constexpr Field primitive_fields[] = {
     index_map("attributes", true),
@@ -221,7 +240,10 @@ constexpr Field sampler_fields[] = {
     enumeration("wrapT", wraps),
 };
 constexpr Field image_fields[] = {text("name"), text("uri"), text("mimeType"), index("bufferView", "/bufferViews")};
-constexpr Field texture_fields[] = {index("sampler", "/samplers"), index("source", "/images")};
+constexpr Field webp_fields[] = {index("source", "/images")};
+constexpr Field texture_extension_fields[] = {object("EXT_texture_webp", webp_fields)};
+constexpr Field texture_fields[] = {index("sampler", "/samplers"), index("source", "/images"),
+                                    object("extensions", texture_extension_fields)};
 
 constexpr Field texture_transform_fields[] = {
     numbers("offset", 2),
@@ -332,6 +354,9 @@ private:
             case Kind::number: check_number(value, path); break;
             case Kind::numbers: check_numbers(value, path, field.length); break;
             case Kind::integer: check_integer(value, path, field); break;
+            case Kind::integer_map:
+                check_map(value, path, [&](json& number, const std::string& p) { check_integer(number, p, field); });
+                break;
             case Kind::index: check_index(value, path, field.collection); break;
             case Kind::indices:
                 check_array(value, path);
@@ -401,11 +426,14 @@ private:
         }
     }
 
-    void check_index_map(json& value, const std::string& path, const char* collection) const {
+    /// check(member, its path) of every member of an object.
+    template <typename Check> void check_map(json& value, const std::string& path, const Check& check) const {
         if (!value.is_object()) fail(path, value, "it must be an object");
-        for (auto& [name, target] : value.items()) {
-            check_index(target, path + "[" + json_text(name) + "]", collection);
-        }
+        for (auto& [name, member] : value.items()) check(member, path + "[" + json_text(name) + "]");
+    }
+
+    void check_index_map(json& value, const std::string& path, const char* collection) const {
+        check_map(value, path, [&](json& index, const std::string& p) { check_index(index, p, collection); });
     }
 
     void check_index(json& value, const std::string& path, const char* collection) const {

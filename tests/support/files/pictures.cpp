@@ -4,6 +4,7 @@
 
 #include <png.h>
 #include <turbojpeg.h>
+#include <webp/encode.h>
 
 namespace vkcppm::test {
 
@@ -63,6 +64,29 @@ std::string encode_jpeg(Extent size, const std::vector<std::uint8_t>& samples, b
     std::string bytes(reinterpret_cast<char*>(data), count);
     tjFree(data);
     tjDestroy(encoder);
+    return bytes;
+}
+
+std::string encode_webp(Extent size, const std::vector<std::uint8_t>& rgba, bool is_lossless) {
+    WebPConfig config;
+    WebPPicture picture;
+    if (!WebPConfigInit(&config) || !WebPPictureInit(&picture)) throw std::runtime_error("libwebp's version");
+    config.lossless = is_lossless;
+    config.exact = 1;  // colours below no alpha as well
+    config.quality = 95;
+    picture.use_argb = is_lossless;
+    picture.width = int(size.width);
+    picture.height = int(size.height);
+    WebPMemoryWriter writer;
+    WebPMemoryWriterInit(&writer);
+    picture.writer = WebPMemoryWrite;
+    picture.custom_ptr = &writer;
+    const bool is_written =
+        WebPPictureImportRGBA(&picture, rgba.data(), 4 * picture.width) && WebPEncode(&config, &picture);
+    const std::string bytes(reinterpret_cast<const char*>(writer.mem), writer.size);
+    WebPPictureFree(&picture);
+    WebPMemoryWriterClear(&writer);
+    if (!is_written) throw std::runtime_error("libwebp writes no such picture");
     return bytes;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// PNG and JPEG files for tests, made by the libraries' own writers.
+// PNG, JPEG and WebP files for tests, made by the libraries' own writers.
 
 #include <array>
 #include <cstdint>
@@ -32,5 +32,8 @@ std::string one_texel_png(const std::array<std::uint8_t, 4>& rgba);
 
 /// `samples`: 3 a pixel, or 1 where `is_gray`. Quality 100, without chroma subsampling.
 std::string encode_jpeg(Extent size, const std::vector<std::uint8_t>& samples, bool is_gray = false);
+
+/// 8-bit RGBA; the same texels again where it is lossless.
+std::string encode_webp(Extent size, const std::vector<std::uint8_t>& rgba, bool is_lossless = true);
 
 }  // namespace vkcppm::test

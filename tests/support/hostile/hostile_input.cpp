@@ -86,7 +86,7 @@ std::string read_texture(const std::string& bytes) {
 
 std::string misbehaviour(const std::string& bytes) {
     const auto begins = [&](std::string_view magic) { return bytes.starts_with(magic); };
-    if (begins("\x89PNG") || begins("\xff\xd8\xff")) return read_texture(bytes);
+    if (begins("\x89PNG") || begins("\xff\xd8\xff") || begins("RIFF")) return read_texture(bytes);
     static const TemporaryFolder folder;
     const std::filesystem::path file = folder / "hostile";
     write_bytes(file, bytes);

@@ -156,6 +156,9 @@ const std::vector<std::pair<const char*, json>>& rare_members() {
             {"count", 9},
             {"mode", "ATTRIBUTES"},
             {"filter", "COLOR"}}}}},
+        {"extensions", {{"KHR_draco_mesh_compression", {{"bufferView", 0}, {"attributes", {{"POSITION", 0}}}}}}},
+        {"attributes", {{"POSITION", 1}, {"NORMAL", 0}}},
+        {"extensions", {{"EXT_texture_webp", {{"source", 0}}}}},
         {"uri", "data:;base64,AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA=="},
     };
     return members;

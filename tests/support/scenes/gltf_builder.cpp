@@ -55,4 +55,33 @@ GltfBuilder one_triangle() {
     return builder;
 }
 
+GltfBuilder grid(int n) {
+    GltfBuilder builder;
+    std::vector<Float3> positions;
+    std::vector<std::array<float, 2>> uv;
+    std::vector<std::array<std::uint8_t, 4>> colors;
+    std::vector<std::uint16_t> indices;
+    for (int y = 0; y <= n; ++y) {
+        for (int x = 0; x <= n; ++x) {
+            positions.push_back({float(x), float(y), 0.25f * float((3 * x + 5 * y) % 7)});
+            uv.push_back({float(x) / float(n), float(y) / float(n)});
+            colors.push_back({std::uint8_t(10 * x), std::uint8_t(20 * y), 200, 255});
+            if (x == n || y == n) continue;
+            const int corner = y * (n + 1) + x;
+            for (const int i : {0, 1, n + 2, 0, n + 2, n + 1}) indices.push_back(std::uint16_t(corner + i));
+        }
+    }
+    const std::size_t count = positions.size();
+    const int color = builder.accessor(builder.view(colors), "VEC4", 5121, count);
+    builder.document["accessors"][color]["normalized"] = true;
+    builder.mesh({{"attributes",
+                   {{"POSITION", builder.float3(positions)},
+                    {"NORMAL", builder.float3(std::vector<Float3>(count, Float3{0, 0, 1}))},
+                    {"TEXCOORD_0", builder.accessor(builder.view(uv), "VEC2", 5126, count)},
+                    {"COLOR_0", color}}},
+                  {"indices", builder.u16(indices)}});
+    builder.add("nodes", {{"mesh", 0}});
+    return builder;
+}
+
 }  // namespace vkcppm::test

@@ -71,4 +71,8 @@ std::string data_uri(const std::string& bytes, const std::string& media_type);
 /// something. Accessor 0 is POSITION, mesh 0, node 0.
 GltfBuilder one_triangle();
 
+/// n x n squares of two triangles that face +z and rise by a wave, with normals, texture coordinates and colours of
+/// bytes: mesh 0 at node 0.
+GltfBuilder grid(int n);
+
 }  // namespace vkcppm::test

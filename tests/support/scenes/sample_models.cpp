@@ -1,6 +1,7 @@
 #include "support/scenes/sample_models.h"
 
 #include "support/files/pictures.h"
+#include "support/scenes/draco.h"
 #include "support/scenes/everything.h"
 
 namespace vkcppm::test {
@@ -46,6 +47,21 @@ GltfBuilder textured(const char* where, const json& info = json::object()) {
     json texture = {{"index", add_texture(b)}};
     texture.update(info);
     b.document["materials"][0][json::json_pointer(where)] = texture;
+    return b;
+}
+
+/// The square with a texture that has a WebP beside its PNG.
+GltfBuilder in_webp() {
+    GltfBuilder b = textured("/pbrMetallicRoughness/baseColorTexture");
+    const int webp = b.texture(encode_webp({2, 1}, std::vector<std::uint8_t>{255, 0, 0, 255, 0, 255, 0, 100}));
+    b.document["textures"][0]["extensions"]["EXT_texture_webp"] = b.document["textures"][webp];
+    b.document["extensionsUsed"] = {"EXT_texture_webp"};
+    return b;
+}
+
+GltfBuilder by_draco(const DracoFormat& format) {
+    GltfBuilder b = square();
+    compress_by_draco(b, 0, format);
     return b;
 }
 
@@ -233,6 +249,9 @@ std::vector<SampleModel> sample_models() {
          2},
         {"texture of roughness", textured("/pbrMetallicRoughness/metallicRoughnessTexture"), 2},
         {"texture of normals", textured("/normalTexture"), 2},
+        {"texture in WebP", in_webp(), 2},
+        {"Draco", by_draco({}), 2},
+        {"Draco in order", by_draco({.sequential = true, .position_bits = 12}), 2},
         {"missing image",
          changed(textured(base_colour), "/images/0", {{"uri", "absent.png"}}),
          2,
