@@ -266,7 +266,7 @@ void declare(CLI::App& app, RenderOptions& options) {
             "and --stats have a place for its number, as out_%04d.exr (default: the scene's name with _%04d.exr).\n"
             "A frame whose files are there and are of this render is skipped");
     frames->needs("--animation")->excludes("--at")->excludes("--checkpoint")->excludes("--resume");
-    frames->excludes("--reference")->excludes(snapshot);
+    frames->excludes("--reference")->excludes("--target")->excludes(snapshot);
     add(app, "--fps", "X", options.fps, parse_rate, fmt::format("Frames of a second (default: {:g})", options.fps))
         ->needs(frames);
     add_settings(app, options.settings, {Kind::picture, Kind::view});

@@ -114,6 +114,7 @@ TEST_F(Frames, AreRefusedWithoutAPlaceForTheirNumber) {
     }
     refused({"--frames", "0..1", "--fps", "0"}, {"--fps", "'0'"});
     refused({"--frames", "0..1", "--at", "1"}, {"--frames", "--at"});
+    refused({"--frames", "0..1", "--target", "noise=2%"}, {"--frames", "--target"});
     refused({"--frames", "0..1", "--checkpoint", "c"}, {"--frames", "--checkpoint"});
     refused({"--fps", "25"}, {"--fps", "--frames"});
     expect_failure(run({"s.gltf", "--frames", "0..1"}), 2, {"--frames", "--animation"}, "at rest");

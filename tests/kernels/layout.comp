@@ -79,10 +79,10 @@ BLOCK(FIRST + 20, TextureLookupBlock, TextureLookup, texture_lookups)
 BLOCK(FIRST + 21, HitSurfaceBlock, HitSurface, hit_surfaces)
 BLOCK(FIRST + 22, TraceStateBlock, TraceState, trace_states)
 BLOCK(FIRST + 23, LightRayBlock, LightRay, light_rays)
-BLOCK(FIRST + 24, EyeStateBlock, EyeState, eye_states)
+// The rows of this number and of the one for instances are read as texels alone.
+BLOCK(ERRORS(BINDING_NUMBER), EyeStateBlock, EyeState, eye_states)
 BLOCK(FIRST + 25, SearchStateBlock, SearchState, search_states)
 BLOCK(FIRST + 26, AskedLightBlock, AskedLight, asked_lights)
-// Not behind the others: the next row is read as texels alone.
 BLOCK(GRID(BINDING_NUMBER), InstanceBlock, Instance, instance_records)
 BLOCK(FIRST + 28, InstanceNodeBlock, InstanceNode, instance_nodes)
 

@@ -49,8 +49,8 @@
     X(knn) X(radius_cap) X(radius_floor) X(footprint_cap) X(inverse_paths) X(flux_unit) X(alpha) X(k) X(beta) \
     X(cells) X(grid_levels) X(most_levels) X(sort_lanes) X(scan_blocks) X(threshold) X(sector_edge) X(sector_centre)
 #define MEMBERS_EYE_STATE X(origin) X(flags) X(direction) X(followed) X(throughput) X(leg) X(emission) X(distance) \
-    X(end) X(layer) X(direct) X(met) X(media)
+    X(end) X(layer) X(direct) X(met) X(media) X(bias)
 #define MEMBERS_SEARCH_STATE X(largest) X(largest_index) X(radius) X(kept)
 #define MEMBERS_LAUNCH X(iteration) X(round) X(last_round) X(paths) X(search_group) X(level) X(scan_first) \
-    X(scan_count) X(digit_shift) X(reads_b) X(plans_next) X(band) X(last_band) X(first_pixel) X(pixels) X(argument) \
-    X(items)
+    X(scan_count) X(digit_shift) X(reads_b) X(plans_next) X(error_group) X(band) X(last_band) X(first_pixel) \
+    X(pixels) X(argument) X(items)

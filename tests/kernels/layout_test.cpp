@@ -84,7 +84,8 @@ template <typename S> S bumped(S value) {
 /// The storage buffer that block `index` of layout.comp is bound to.
 Binding block(std::uint32_t index) {
     const auto binding = Binding(std::uint32_t(Binding::hit_position) + index);
-    return binding == Binding::instances ? Binding::grid : binding;  // that one is read as texels alone
+    // Those two are read as texels alone.
+    return binding == Binding::instances ? Binding::grid : binding == Binding::quantiles ? Binding::errors : binding;
 }
 
 class Layout : public GpuTest {
