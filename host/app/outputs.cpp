@@ -31,6 +31,7 @@ void check_ending(const Output& output) {
 /// One name for a file whatever it is called: absolute, without links. Of a file that is not there yet the folder alone
 /// has links to follow, which weakly_canonical() does only where it is told of one.
 fs::path name_of(const fs::path& file) {
+    if (file.empty()) return file;  // no name, which whoever opens it refuses
     return is_standard_output(file) ? "/dev/stdout" : fs::weakly_canonical(fs::absolute(file));
 }
 

@@ -396,6 +396,8 @@ TEST_F(Cli, EveryMisuseHasItsExitCodeAndItsLine) {
         {{"--reference", "caustic.exr"}, 2, {"-o", "caustic.exr", "input"}},
         {{"--stop-at", "relmse=1"}, 2, {"--stop-at", "--reference"}},
         {{"--reference", "r.exr", "--stop-at", "worst=1"}, 2, {"--stop-at", "worst", "relmse_trimmed"}},
+        {{"--environment", ""}, 66, {"no such file"}},
+        {{"-o", ""}, 73, {"names no file"}},
         {{"--target", "relmse"}, 2, {"--target", "'relmse'", "noise=2%"}},
         {{"--target", "psnr=30"}, 2, {"--target", "'psnr=30'", "relmse_trimmed"}},
         {{"--target", "noise=0"}, 2, {"--target", "noise=0", "greater than 0"}},
