@@ -46,16 +46,21 @@ std::optional<Measuring> read_measuring(const RenderOptions& options, const Exte
     return measuring;
 }
 
-/// Says whether the error to stop at was reached.
+/// Says whether an error that a render was to end at was reached: `found` is what it has, `wanted` the option.
+void print_end(bool reached, const std::string& found, const std::string& wanted, bool quiet) {
+    if (!reached) {
+        print_message(fmt::format("warning: {}: {} was not reached", found, wanted));
+    } else if (!quiet) {
+        print_message(fmt::format("{}: {} was reached", found, wanted));
+    }
+}
+
 void print_stop(const StopAt& stop_at, const Rendering& rendering, bool quiet) {
     const CurvePoint& last = rendering.curve.back();
-    const std::string error = fmt::format("{} {:.6g} after {} iterations", stop_at.metric->name,
-                                          stop_at.metric->of(last.error), last.iterations);
-    if (!reached(stop_at, rendering)) {
-        print_message(fmt::format("warning: {}: --stop-at {:.6g} was not reached", error, stop_at.value));
-    } else if (!quiet) {
-        print_message(fmt::format("{}: --stop-at {:.6g} was reached", error, stop_at.value));
-    }
+    print_end(reached(stop_at, rendering),
+              fmt::format("{} {:.6g} after {} iterations", stop_at.metric->name, stop_at.metric->of(last.error),
+                          last.iterations),
+              fmt::format("--stop-at {:.6g}", stop_at.value), quiet);
 }
 
 /// Says what the render thinks of its own error.
@@ -64,8 +69,7 @@ void print_estimate(const ErrorEstimate& estimate) {
     constexpr double confidence = 0.9;
     print_message(
         fmt::format("error of its own estimate: relmse_trimmed {:.3g} ({:.3g} noise, {:.3g} bias), at most {:.3g} by "
-                    "{:g} %; relmse "
-                    "{:.3g}; median noise of a pixel {:.2g} %",
+                    "{:g} %; relmse {:.3g}; median noise of a pixel {:.2g} %",
                     relmse.error.value, relmse.noise, relmse.bias, upper_bound(relmse.error, confidence),
                     100.0 * confidence, estimate.relmse.error.value, 100.0 * estimate.noise.value));
 }
@@ -80,13 +84,10 @@ void print_target(const Target& target, const Rendering& rendering, bool quiet) 
                         wanted, 2 * least_estimated, done));
         return;
     }
-    const std::string bound = fmt::format("at most {:.3g} by {:g} % after {} iterations",
-                                          upper_bound(target, *rendering.estimate), 100.0 * target.confidence, done);
-    if (!is_met(target, rendering.estimate)) {
-        print_message(fmt::format("warning: {}: {} was not reached", bound, wanted));
-    } else if (!quiet) {
-        print_message(fmt::format("{}: {} was reached", bound, wanted));
-    }
+    print_end(is_met(target, rendering.estimate),
+              fmt::format("at most {:.3g} by {:g} % after {} iterations", upper_bound(target, *rendering.estimate),
+                          100.0 * target.confidence, done),
+              wanted, quiet);
 }
 
 /// Where checkpoints go. A disk or a memory that is full for a while costs no more than the checkpoints of that while:

@@ -176,9 +176,10 @@ PixelError error_of(const Reader& reader, std::size_t pixel) {
     const double bias_weight = 1.0 / luminance(divisor);
     const auto noise = [&](const glm::dvec4& variance) { return glm::dot(colour(variance), weight); };
     const auto bias = [&](double b, double variance) { return bias_weight * (b * b - variance); };
+    const glm::dvec4 of_all = spread.variance();
     PixelError error;
-    error.noise[0] = float(noise(spread.variance()));
-    error.bias[0] = float(bias(spread.mean_of_all.w, spread.variance().w));
+    error.noise[0] = float(noise(of_all));
+    error.bias[0] = float(bias(spread.mean_of_all.w, of_all.w));
     for (std::size_t k = 0; k < groups; ++k) {
         const glm::dvec4 variance = spread.variance_without(k);
         error.noise[1 + k] = float(noise(variance) * (spread.total - spread.size[k]) / spread.total);
@@ -248,29 +249,28 @@ Expected median_noise(const std::vector<PixelError>& errors, const std::array<do
     return jackknife(medians);
 }
 
-/// [blocks] Squared standard errors of means over blocks.
-std::vector<glm::dvec3> block_variances(const ErrorSums& sums, std::uint32_t side) {
-    const auto sizes = group_sizes(sums.iterations);
-    std::array<std::vector<glm::dvec3>, groups> means;
+/// The same of means over blocks: a picture whose pixels are the blocks. Without the bias.
+ErrorSums in_blocks(const ErrorSums& sums, std::uint32_t side) {
+    ErrorSums blocks{blocks_of(sums.extent, side), sums.iterations, {}};
     for (std::size_t k = 0; k < groups; ++k) {
-        std::vector<glm::dvec3> of_pixels(sums.of_group[k].begin(), sums.of_group[k].end());
-        for (glm::dvec3& mean : of_pixels) mean /= double(sizes[k]);
-        means[k] = block_means(sums.extent, side, of_pixels);
-    }
-    std::vector<glm::dvec3> variances(means[0].size(), glm::dvec3(0.0));
-    for (std::size_t block = 0; block < variances.size(); ++block) {
-        std::array<glm::dvec4, groups> of_block;
-        std::array<double, groups> block_sizes{};
-        for (std::size_t k = 0; k < groups; ++k) {
-            of_block[k] = glm::dvec4(means[k][block] * double(sizes[k]), 0.0);
-            block_sizes[k] = double(sizes[k]);
+        const std::vector<glm::dvec3> of_pixels(sums.of_group[k].begin(), sums.of_group[k].end());
+        for (const glm::dvec3& mean : block_means(sums.extent, side, of_pixels)) {
+            blocks.of_group[k].emplace_back(mean, 0.0);
         }
-        variances[block] = colour(Groups(of_block, block_sizes).variance());
     }
-    return variances;
+    return blocks;
 }
 
-double root_mean(const glm::dvec3& squares) { return std::sqrt((squares.x + squares.y + squares.z) / 3.0); }
+/// [P] Standard errors, root mean square over the channels of colour.
+std::vector<float> standard_errors(const ErrorSums& sums) {
+    const Reader reader(sums);
+    std::vector<float> errors(sums.extent.pixels());
+    tbb::parallel_for(std::size_t(0), errors.size(), [&](std::size_t pixel) {
+        const glm::dvec3 squares = colour(reader.groups_of(pixel).variance());
+        errors[pixel] = float(std::sqrt((squares.x + squares.y + squares.z) / 3.0));
+    });
+    return errors;
+}
 
 }  // namespace
 
@@ -351,27 +351,27 @@ ErrorEstimate estimate_error(const ErrorSums& sums) {
 std::map<std::string, std::vector<float>> error_channels(const ErrorSums& sums) {
     const Reader reader(sums);
     const std::size_t pixels = sums.extent.pixels();
+    std::vector<double> of_pixels(pixels);  // B
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) of_pixels[pixel] = reader.mean(pixel).w;
     std::map<std::string, std::vector<float>> channels;
-    std::vector<float>& error = channels["StdErr"];
+    const std::vector<float>& error = channels["StdErr"] = standard_errors(sums);
     std::vector<float>& bias = channels["Bias"];
     std::vector<float>& bound = channels["Bound"];
     const double t = student(0.5 + 0.5 * bound_confidence);  // of both sides
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
         double found = 0.0, count = 0.0;
         reader.visit_about(pixel, [&](std::size_t at) {
-            found += reader.mean(at).w;
+            found += of_pixels[at];
             count += 1.0;
         });
-        const double noise = root_mean(colour(reader.groups_of(pixel).variance()));
-        error.push_back(float(noise));
         bias.push_back(float(found / count));
-        bound.push_back(float(t * noise + std::abs(double(bias.back()))));
+        bound.push_back(float(t * error[pixel] + std::abs(double(bias.back()))));
     }
     for (const std::uint32_t side : block_sides(sums.extent)) {
-        const std::vector<glm::dvec3> variances = block_variances(sums, side);
+        const std::vector<float> of_blocks = standard_errors(in_blocks(sums, side));
         std::vector<float>& values = channels[fmt::format("StdErr.{}", side)];
         for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-            values.push_back(float(root_mean(variances[block_at(sums.extent, side, pixel)])));
+            values.push_back(of_blocks[block_at(sums.extent, side, pixel)]);
         }
     }
     return channels;

@@ -82,12 +82,20 @@ Rendering render(const Scene& scene, const Settings& wanted, Device& device, con
         book();
         checkpointing.keep(kept, [&] { return Checkpoint{result.report, result.curve, integrator.save()}; });
     };
+    const auto take_picture = [&] {
+        result.image = integrator.resolve();
+        result.aovs = settings.aovs ? integrator.aovs() : decltype(result.aovs)();
+        if (settings.error && integrator.completed() >= least_estimated) {
+            const ErrorSums sums = integrator.error_sums();
+            result.estimate = estimate_error(sums);
+            result.aovs.merge(error_channels(sums));
+        }
+    };
     double shown_at = watch.wall();
     const auto show = [&] {
         shown_at = watch.wall();
         book();
-        result.image = integrator.resolve();
-        if (settings.aovs) result.aovs = integrator.aovs();
+        take_picture();
         snapshots.show(result);
     };
     CurvePoint latest;
@@ -143,20 +151,14 @@ Rendering render(const Scene& scene, const Settings& wanted, Device& device, con
         if (latest.iterations < integrator.completed()) take_measure();
         result.curve.push_back(latest);
     }
-    result.image = integrator.resolve();
-    if (settings.aovs) result.aovs = integrator.aovs();
-    if (settings.error && result.report.iterations >= least_estimated) {
-        const ErrorSums sums = integrator.error_sums();
-        result.estimate = estimate_error(sums);
-        result.aovs.merge(error_channels(sums));
-        // What is found once is missed as often.
-        constexpr double much = 0.01;
-        if (result.estimate->rare > much) {
-            result.warnings.push_back(fmt::format(
-                "{:.2g} % of the picture's light is in pixels that have found most of theirs in one of {} parts of the "
-                "iterations: other pixels may have missed such light, which no estimate of the error knows",
-                100.0 * result.estimate->rare, ERROR_GROUPS));
-        }
+    take_picture();
+    // What is found once is missed as often.
+    constexpr double much = 0.01;
+    if (result.estimate && result.estimate->rare > much) {
+        result.warnings.push_back(fmt::format(
+            "{:.2g} % of the picture's light is in pixels that have found most of theirs in one of {} parts of the "
+            "iterations: other pixels may have missed such light, which no estimate of the error knows",
+            100.0 * result.estimate->rare, ERROR_GROUPS));
     }
     integrator.fill(result.report);
     result.report.peak_memory_bytes = peak_memory();

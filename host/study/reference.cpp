@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/blocks.h"
 #include "core/error.h"
 #include "core/metrics.h"
 #include "core/process.h"
@@ -16,7 +17,6 @@
 #include "render/path_tracer.h"
 #include "render/render.h"
 #include "study/batch_mean.h"
-#include "core/blocks.h"
 #include "study/significance.h"
 #include "vk/device.h"
 

@@ -12,8 +12,8 @@
 
 #include <gtest/gtest.h>
 
-#include "study/batch_mean.h"
 #include "core/blocks.h"
+#include "study/batch_mean.h"
 
 namespace vkcppm {
 namespace {

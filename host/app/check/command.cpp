@@ -14,10 +14,10 @@
 #include "app/display.h"
 #include "app/outputs.h"
 #include "app/record.h"
+#include "core/blocks.h"
 #include "core/error.h"
 #include "io/atomic_file.h"
 #include "io/exr.h"
-#include "core/blocks.h"
 #include "study/check.h"
 
 namespace vkcppm {

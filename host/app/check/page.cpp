@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "app/page/html.h"
-#include "io/png.h"
 #include "core/blocks.h"
+#include "io/png.h"
 #include "study/false_colour.h"
 
 namespace vkcppm {
