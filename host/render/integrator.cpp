@@ -86,7 +86,8 @@ Integrator::Integrator(const SceneOnDevice& on_device, const Camera& camera, con
     specialization_.merge(Specialization{{SPEC_RINGS, settings.rings},
                                          {SPEC_SECTORS, settings.sectors},
                                          {SPEC_DIGIT_BITS, digits_.bits},
-                                         {SPEC_LEVELS, params_.grid_levels}});
+                                         {SPEC_LEVELS, params_.grid_levels},
+                                         {SPEC_DEALS, device_.policy().deals_paths ? 1u : 0u}});
     estimator_ = estimator.name;
     std::vector<KernelId> all;
     for (const KernelRow& row : kernel_rows()) {

@@ -14,11 +14,19 @@
 #include "shared/types.h"
 #include "vk/binding.h"
 #include "vk/device_impl.h"
+#include "vk/reconvergence.h"
 
 namespace vkcppm {
 namespace {
 
 constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
+/// What all features of one member look like, those of extensions that the headers do not know, too.
+struct PromiseFeature {
+    VkStructureType type{};
+    void* next = nullptr;
+    VkBool32 on = false;
+};
+
 constexpr const char* portability_subset = "VK_KHR_portability_subset";  // its macro is in vulkan_beta.h alone
 
 bool has(const std::vector<vk::ExtensionProperties>& extensions, const char* name) {
@@ -63,12 +71,16 @@ DeviceType type_of(vk::PhysicalDeviceType type) {
     }
 }
 
+/// A queue for kernels, if there is one with time stamps.
 std::optional<std::uint32_t> compute_family(const vk::raii::PhysicalDevice& physical) {
     const auto families = physical.getQueueFamilyProperties();
+    std::optional<std::uint32_t> first;
     for (std::uint32_t i = 0; i < families.size(); ++i) {
-        if ((families[i].queueFlags & vk::QueueFlagBits::eCompute) && families[i].timestampValidBits > 0) return i;
+        if (!(families[i].queueFlags & vk::QueueFlagBits::eCompute)) continue;
+        if (families[i].timestampValidBits > 0) return i;
+        if (!first) first = i;
     }
-    return std::nullopt;
+    return first;
 }
 
 /// Heaps and types of memory.
@@ -91,6 +103,19 @@ void add_memory(DeviceFacts& facts, const vk::raii::PhysicalDevice& physical) {
                                 .cached = bool(has & Memory::eHostCached),
                                 .special = bool(has & ~known)});
     }
+}
+
+/// The strongest promise of convergence that the device has a feature for.
+Reconvergence promised_by(const vk::raii::PhysicalDevice& physical) {
+    const auto extensions = physical.enumerateDeviceExtensionProperties();
+    for (const Promise& promise : promises) {
+        if (!has(extensions, promise.extension)) continue;
+        PromiseFeature feature{VkStructureType(promise.feature_type)};
+        VkPhysicalDeviceFeatures2 all{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &feature, {}};
+        physical.getDispatcher()->vkGetPhysicalDeviceFeatures2(*physical, &all);
+        if (feature.on) return promise.of;
+    }
+    return Reconvergence::none;
 }
 
 DeviceFacts facts_of(const vk::raii::PhysicalDevice& physical) {
@@ -120,7 +145,8 @@ DeviceFacts facts_of(const vk::raii::PhysicalDevice& physical) {
     facts.ballots = (subgroup.supportedStages & vk::ShaderStageFlagBits::eCompute) &&
                     (subgroup.supportedOperations & vk::SubgroupFeatureFlagBits::eBallot);
     facts.subgroup_size = subgroup.subgroupSize;
-    facts.loop_limit = chain.get<vk::PhysicalDeviceDriverProperties>().driverID == vk::DriverId::eMesaLlvmpipe;
+    facts.llvmpipe = chain.get<vk::PhysicalDeviceDriverProperties>().driverID == vk::DriverId::eMesaLlvmpipe;
+    facts.reconvergence = promised_by(physical);
     return facts;
 }
 
@@ -326,7 +352,7 @@ Device::Device(const Options& options) : impl_(std::make_unique<Impl>()) {
 
     guarded("creating the device", [&] {
         const std::uint32_t family = *compute_family(*impl.physical);
-        impl.timestamp_bits = impl.physical->getQueueFamilyProperties()[family].timestampValidBits;
+        impl.stamp_bits = impl.physical->getQueueFamilyProperties()[family].timestampValidBits;
         const float priority = 1.0f;
         const vk::DeviceQueueCreateInfo queue({}, family, 1, &priority);
         vk::PhysicalDeviceVulkan12Features features;
@@ -334,6 +360,13 @@ Device::Device(const Options& options) : impl_(std::make_unique<Impl>()) {
         std::vector<const char*> extensions;  // a driver that has this one wants it asked for
         if (has(impl.physical->enumerateDeviceExtensionProperties(), portability_subset)) {
             extensions.push_back(portability_subset);
+        }
+        PromiseFeature feature{};
+        for (const Promise& promise : promises) {
+            if (promise.of != impl.policy.reconvergence) continue;
+            feature = {VkStructureType(promise.feature_type), nullptr, true};
+            features.pNext = &feature;
+            extensions.push_back(promise.extension);
         }
         vk::DeviceCreateInfo info({}, queue, {}, extensions);
         info.pNext = &features;

@@ -46,7 +46,7 @@ struct Device::Impl {
     DeviceFacts facts;
     DevicePolicy policy;
     vk::PhysicalDeviceLimits limits;
-    std::uint32_t timestamp_bits = 64;       // that count
+    std::uint32_t stamp_bits = 64;           // of time stamps, that count; 0: there are none
     std::uint64_t allocated = 0;             // bytes of live buffers
     std::vector<std::uint64_t> heap_in_use;  // the same of each heap
     std::uint64_t peak = 0;

@@ -136,10 +136,13 @@ DevicePolicy policy_of(const DeviceFacts& facts, std::uint32_t threads, std::opt
     policy.sort_run = cpu ? 128 : 32;
     policy.most_sort_lanes = cpu ? 1u << 12 : 1u << 14;
     policy.tries_forms = !cpu;
+    // llvmpipe was measured without: its lanes are one vector, and the tests count the paths.
+    if (!facts.llvmpipe) policy.reconvergence = facts.reconvergence;
+    policy.deals_paths = policy.reconvergence != Reconvergence::none || (facts.llvmpipe && cpu);
     // llvmpipe of Mesa 22.3 ends every loop, in silence, once the loops of a SIMD group have made 65,535 trips in all.
     // A group's trips are at most the sum over its lanes; a kernel may overdraw its budget by a few hundred.
     // Elsewhere: counters of 16 bits of the gather never overflow in a dispatch.
-    policy.step_budget = facts.loop_limit ? 65535 / facts.subgroup_size - 1024 : 65535 - 1024;
+    policy.step_budget = facts.llvmpipe ? 65535 / facts.subgroup_size - 1024 : 65535 - 1024;
     return policy;
 }
 

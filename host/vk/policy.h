@@ -26,12 +26,16 @@ struct MemoryType {
     bool special = false;   // protected, or allocated late: not for buffers
 };
 
+/// What a device promises of lanes that went apart: nothing, that they are together again behind a branch to which all
+/// came together, or wherever it looks so in the source (vk/reconvergence.h).
+enum class Reconvergence { none, uniform, maximal };
+
 /// What a driver says of a device.
 struct DeviceFacts {
     DeviceType type = DeviceType::other;
     std::uint32_t version_major = 1;  // of Vulkan
     std::uint32_t version_minor = 0;
-    bool loop_limit = false;  // llvmpipe, some versions of which stop all loops of a SIMD group after 65,535 trips
+    bool llvmpipe = false;  // by its driver
     bool scalar_block_layout = false;
     bool ballots = false;  // of subgroups, in compute shaders
     std::uint32_t subgroup_size = 1;
@@ -45,6 +49,7 @@ struct DeviceFacts {
     std::uint64_t storage_bytes = 0;   // of a storage buffer
     std::uint64_t uniform_bytes = 0;   // of a uniform buffer
     bool computes = false;             // it has a queue for kernels
+    Reconvergence reconvergence{};     // the strongest promise
     std::vector<std::uint64_t> heaps;  // bytes
     std::vector<MemoryType> memory;
 };
@@ -78,6 +83,10 @@ struct DevicePolicy {
     /// one by one, and every invocation has a histogram.
     std::uint32_t sort_run = 0;
     std::uint32_t most_sort_lanes = 0;
+    /// Lanes of the photon pass share the light paths of their SIMD group, which takes that they come together again.
+    bool deals_paths = false;
+    /// What kernels with ballots ask of the device.
+    Reconvergence reconvergence = Reconvergence::none;
     /// Kernels are compiled in several forms of which the fastest is found.
     bool tries_forms = false;
     /// Loop trips that one invocation may make in one dispatch, with certainty within the driver's limits.

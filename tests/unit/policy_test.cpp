@@ -176,7 +176,7 @@ TEST(Policy, AnIntegratedDeviceGoesOnInTheHostsMemory) {
 DeviceFacts llvmpipe() {
     DeviceFacts facts = facts_of(published[0]);
     facts.type = DeviceType::cpu;
-    facts.loop_limit = true;
+    facts.llvmpipe = true;
     facts.subgroup_size = 8;
     facts.memory = {{.heap = 0, .device_local = true, .mappable = true, .cached = true}};
     return facts;
@@ -190,6 +190,19 @@ TEST(Policy, SoftwareVulkanIsMappedAndHasFewLanes) {
     EXPECT_FALSE(policy.tries_forms);
     EXPECT_EQ(policy.busy_lanes, 2048u);
     EXPECT_EQ(policy.step_budget, 65535 / 8 - 1024u);
+}
+
+// Light paths are dealt out where lanes are promised to come together again, and on llvmpipe, where they do.
+TEST(Policy, LightPathsAreDealtWhereLanesComeTogether) {
+    DeviceFacts facts = facts_of(published[0]);
+    EXPECT_FALSE(policy_of(facts, 4).deals_paths);
+    for (const Reconvergence promise : {Reconvergence::uniform, Reconvergence::maximal}) {
+        facts.reconvergence = promise;
+        EXPECT_TRUE(policy_of(facts, 4).deals_paths);
+        EXPECT_EQ(policy_of(facts, 4).reconvergence, promise) << "it is asked for";
+    }
+    EXPECT_TRUE(policy_of(llvmpipe(), 4).deals_paths);
+    EXPECT_FALSE(policy_of(llvmpipe(), 4, Way::gpu).deals_paths) << "so that tests see the other form";
 }
 
 TEST(Policy, OneWayCanBeAskedForInPlaceOfTheOther) {
