@@ -464,8 +464,9 @@ std::map<std::string, std::vector<float>> Integrator::aovs() const {
         add(std::string("Albedo.") + "RGB"[c], [&](State, Sums a) { return mean(a.albedo[c], a.albedo_low[c], a); });
         add(std::string("N.") + "XYZ"[c], [&](State, Sums a) { return mean(a.normal[c], a.normal_low[c], a); });
     }
-    const auto films = of_pixels<gpu::Film>(Binding::film);
     const double iterations = std::max(1u, completed_);
+    add("A", [&](State, Sums a) { return std::min(1.0, a.hits / iterations); });
+    const auto films = of_pixels<gpu::Film>(Binding::film);
     for (int c = 0; c < 3; ++c) {
         const auto layer = [&](std::uint64_t i, std::uint32_t l) {
             return (double(sums[i].layer[l][c]) + double(sums[i].layer_low[l][c])) / iterations;
