@@ -16,13 +16,14 @@ nlohmann::ordered_json json_of(const std::vector<DeviceInfo>& devices) {
     for (const DeviceInfo& device : devices) {
         json.push_back({{"index", device.index},
                         {"name", device.name},
-                        {"type", device.type},
+                        {"type", name_of(device.type)},
                         {"driver", device.driver},
                         {"api_version", device.api_version},
                         {"uuid", device.uuid},
                         {"memory_bytes", device.memory_bytes},
                         {"usable", device.unusable.empty()},
-                        {"unusable_because", device.unusable}});
+                        {"unusable_because", device.unusable},
+                        {"first_choice", device.first_choice}});
     }
     return json;
 }
@@ -32,10 +33,13 @@ std::string plain_text(const std::vector<DeviceInfo>& devices) {
     std::string text;
     for (const DeviceInfo& device : devices) {
         text += fmt::format("{}: {} ({})\n   {}, Vulkan {}, {:.1f} GiB\n   uuid:{}\n", device.index, device.name,
-                            device.type, device.driver, device.api_version,
+                            name_of(device.type), device.driver, device.api_version,
                             double(device.memory_bytes) / (1024.0 * 1024.0 * 1024.0), device.uuid);
         if (!device.unusable.empty()) {
             text += fmt::format("   unusable: {}\n", device.unusable);
+        } else {
+            text +=
+                device.first_choice ? "   used where --device names no other\n" : "   used where --device names it\n";
         }
     }
     return text;

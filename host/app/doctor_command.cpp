@@ -36,10 +36,11 @@ std::vector<Finding> examine(bool& can_render) {
     const std::vector<DeviceInfo> devices = list_devices();
     for (const DeviceInfo& device : devices) {
         const std::string name = fmt::format("device {}", device.index);
-        const std::string told = fmt::format("{} ({}), {}, Vulkan {}, {:.1f} GB", device.name, device.type,
+        const std::string told = fmt::format("{} ({}), {}, Vulkan {}, {:.1f} GB", device.name, name_of(device.type),
                                              device.driver, device.api_version, gigabytes(device.memory_bytes));
         const std::string lacks = "it cannot run the kernels: " + device.unusable;
         findings.push_back({name, told, device.unusable.empty() ? "" : lacks});
+        if (device.unusable.empty()) findings.push_back({"policy of " + name, device.policy, ""});
         can_render = can_render || device.unusable.empty();
     }
     if (!can_render) findings.push_back({"usable device", "none", driver_advice});

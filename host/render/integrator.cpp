@@ -56,7 +56,7 @@ gpu::Params first_params(const SceneOnDevice& on_device, const Camera& camera, c
 Integrator::Integrator(const SceneOnDevice& on_device, const Camera& camera, const Settings& settings,
                        std::vector<KernelForm> forms, std::uint64_t most_band_pixels)
     : device_(on_device.device()),
-      forms_(forms.empty() ? forms_for(device_.info()) : std::move(forms)),
+      forms_(forms.empty() ? forms_for(device_.policy()) : std::move(forms)),
       params_(first_params(on_device, camera, settings, forms_.front().group)),
       counts_(counts_of(params_, settings, device_, feature_bits(on_device.flat(), settings), most_band_pixels)),
       bands_(counts_.bands),
@@ -86,7 +86,8 @@ Integrator::Integrator(const SceneOnDevice& on_device, const Camera& camera, con
     specialization_.merge(Specialization{{SPEC_RINGS, settings.rings},
                                          {SPEC_SECTORS, settings.sectors},
                                          {SPEC_DIGIT_BITS, digits_.bits},
-                                         {SPEC_LEVELS, params_.grid_levels}});
+                                         {SPEC_LEVELS, params_.grid_levels},
+                                         {SPEC_DEALS, device_.policy().deals_paths ? 1u : 0u}});
     estimator_ = estimator.name;
     std::vector<KernelId> all;
     for (const KernelRow& row : kernel_rows()) {

@@ -11,8 +11,8 @@ std::string text_of(const KernelForm& form) {
     return fmt::format("groups of {}{}", form.group, form.waits ? ", lanes wait" : "");
 }
 
-std::vector<KernelForm> forms_for(const DeviceInfo& device) {
-    if (device.type == "cpu") return {KernelForm{}};
+std::vector<KernelForm> forms_for(const DevicePolicy& policy) {
+    if (!policy.tries_forms) return {KernelForm{}};
     return {{workgroup, false}, {workgroup, true}, {32, false}, {128, false}};
 }
 

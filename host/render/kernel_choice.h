@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "render/kernels.h"
-#include "vk/device.h"
+#include "vk/policy.h"
 
 namespace vkcppm {
 
@@ -27,9 +27,8 @@ struct KernelForm {
 /// "groups of 64" or "groups of 64, lanes wait".
 std::string text_of(const KernelForm& form);
 
-/// The forms worth trying on a device, the likeliest first: on software Vulkan the one that was measured, elsewhere
-/// all.
-std::vector<KernelForm> forms_for(const DeviceInfo& device);
+/// The forms worth trying on a device, the likeliest first: the one that was measured on software Vulkan, or all.
+std::vector<KernelForm> forms_for(const DevicePolicy& policy);
 
 /// Those of `forms` that are worth it for a kernel of that row, each once.
 std::vector<KernelForm> forms_of(const KernelRow& kernel, const std::vector<KernelForm>& forms);

@@ -55,7 +55,7 @@ std::string megabytes(std::uint64_t bytes) { return fmt::format("{:.0f} MB", std
 
 void set_photons(gpu::Params& params, const Settings& settings, const Device& device, bool lit, std::uint32_t group) {
     params.photons = lit ? photons_of(settings) : 0;
-    const std::uint32_t per_lane = std::clamp(params.photons / device.busy_lanes(), 1u, most_photons_per_lane);
+    const std::uint32_t per_lane = std::clamp(params.photons / device.policy().busy_lanes, 1u, most_photons_per_lane);
     params.photons_per_lane = per_lane;
     // Whole work groups: a SIMD group takes the share of all its lanes.
     params.photon_lanes = (params.photons / per_lane / workgroup + 1) * workgroup;
@@ -66,7 +66,9 @@ void set_photons(gpu::Params& params, const Settings& settings, const Device& de
     constexpr std::uint64_t sorted_bytes = 1u << 27, usual_photons = 16;  // a path
     params.most_levels = std::uint32_t(std::clamp<std::uint64_t>(
         sorted_bytes / (sizeof(gpu::Photon) * usual_photons * photons_of(settings)), 1, GRID_LEVELS));
-    params.sort_lanes = std::bit_ceil(std::clamp(photons_of(settings) / 128, 64u, 4096u));
+    const DevicePolicy& policy = device.policy();
+    params.sort_lanes =
+        std::bit_ceil(std::clamp(photons_of(settings) / policy.sort_run, workgroup, policy.most_sort_lanes));
     params.scan_blocks = std::clamp(params.cells / 256, group, 4096u);
 }
 
@@ -133,7 +135,7 @@ void check_memory(const Counts& counts, const Settings& settings, const Device& 
     }
     const DeviceInfo& info = device.info();
     std::uint64_t there = info.memory_bytes - std::min(info.memory_bytes, device.allocated_bytes());
-    if (info.type == "cpu") there = std::min(there, available_memory());
+    if (device.policy().memory_of_host) there = std::min(there, available_memory());
     const std::uint64_t needed = of_pixels + of_band + of_photons + of_scene;
     if (needed <= there) return;
     const Extent size = *settings.size;

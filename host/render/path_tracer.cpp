@@ -72,7 +72,7 @@ void PathTracer::trace(std::uint64_t first, std::uint64_t pixels) {
         }
         status = buffers_.at(Binding::status).download_value<gpu::Status>();
         blocked = status.blocked != 0;
-        const StatusCounts counts = take_counts(status, device_.step_budget(), device_.info().name);
+        const StatusCounts counts = take_counts(status, device_.policy().step_budget, device_.info().name);
         rays_ += counts.rays;
         invalid_ += counts.invalid;
     }

@@ -112,7 +112,7 @@ gpu::Params scene_params(const Device& device, const FlatScene& scene, const Cam
     params.environment = {scene.environment_size.width, scene.environment_size.height};
     params.lens_radius = float(0.5 * lens_diameter(settings, camera) * scene.frame.scale);
     params.focus_distance = float(settings.focus_distance.value_or(1.0) * scene.frame.scale);
-    params.step_budget = device.step_budget();
+    params.step_budget = device.policy().step_budget;
     return params;
 }
 

@@ -1,9 +1,9 @@
 #include "vk/buffer.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cstring>
-#include <initializer_list>
 
 #include <fmt/format.h>
 
@@ -12,12 +12,10 @@
 namespace vkcppm {
 namespace {
 
-using Memory = vk::MemoryPropertyFlagBits;
-
-constexpr vk::MemoryPropertyFlags mappable = Memory::eHostVisible | Memory::eHostCoherent;
 /// Memory that is mapped but not cached is read some tens of MB a second where it lies on a card: beyond so many bytes,
 /// a copy on the device is faster.
 constexpr std::size_t read_uncached = 4096;
+constexpr std::uint64_t most_staged = 1u << 24;  // bytes of a copy; more goes in several
 
 vk::BufferUsageFlags usage_of(Access access) {
     using Usage = vk::BufferUsageFlagBits;
@@ -56,11 +54,17 @@ void check_limits(const Buffer::Impl& buffer) {
                             buffer.device->info().name, most));
 }
 
-/// Some drivers, lavapipe for one, promise more memory than there is, and the system ends the program that believes
-/// them.
-void check_heap(const Buffer::Impl& buffer) {
+/// The types of memory for a buffer in whose heaps so much is left. Some drivers, lavapipe for one, promise more memory
+/// than there is, and the system ends the program that believes them.
+std::vector<std::uint32_t> types_with_room(const Buffer::Impl& buffer) {
     const Device::Impl& device = buffer.device->impl();
-    if (buffer.bytes <= device.info.memory_bytes - std::min(device.info.memory_bytes, device.allocated)) return;
+    std::vector<std::uint32_t> types = device.policy.buffer_memory;
+    std::erase_if(types, [&](std::uint32_t type) {
+        const std::uint32_t heap = device.facts.memory[type].heap;
+        const std::uint64_t size = device.facts.heaps[heap];
+        return buffer.bytes > size - std::min(size, device.heap_in_use[heap]);
+    });
+    if (!types.empty()) return types;
     throw Error(ExitCode::out_of_device_memory,
                 fmt::format("buffer '{}' needs {} bytes beside {} in use, the memory of the device '{}' has {}",
                             buffer.name, buffer.bytes, device.allocated, device.info.name, device.info.memory_bytes));
@@ -68,50 +72,59 @@ void check_heap(const Buffer::Impl& buffer) {
 
 struct Allocation {
     vk::raii::DeviceMemory memory;
-    vk::MemoryPropertyFlags properties;
+    std::uint32_t type;
 };
 
-/// Memory for `buffer` with the properties of the first wish that can be had: a type of memory may be absent, or full
-/// long before the others, as the window is through which the host sees the memory of some cards.
-Allocation allocate(Device::Impl& device, const vk::raii::Buffer& buffer,
-                    std::initializer_list<vk::MemoryPropertyFlags> wishes) {
-    const vk::MemoryPropertyFlags known = Memory::eDeviceLocal | mappable | Memory::eHostCached;  // others are special
+/// Memory of the first of `types` that can be had: one may be full long before the others, as the window is through
+/// which the host sees the memory of some cards.
+Allocation allocate(Device::Impl& device, const vk::raii::Buffer& buffer, const std::vector<std::uint32_t>& types) {
     const auto needed = buffer.getMemoryRequirements();
-    std::uint32_t untried = needed.memoryTypeBits;
     std::optional<vk::OutOfDeviceMemoryError> full;
-    for (const vk::MemoryPropertyFlags wish : wishes) {
-        for (std::uint32_t i = 0; i < device.memory.memoryTypeCount; ++i) {
-            const vk::MemoryPropertyFlags properties = device.memory.memoryTypes[i].propertyFlags;
-            if (!(untried >> i & 1) || (properties & wish) != wish || (properties & ~known)) continue;
-            untried &= ~(1u << i);
-            try {
-                return {vk::raii::DeviceMemory(*device.device, vk::MemoryAllocateInfo(needed.size, i)), properties};
-            } catch (const vk::OutOfDeviceMemoryError& error) {
-                full = error;
-            }
+    for (const std::uint32_t type : types) {
+        if (!(needed.memoryTypeBits >> type & 1)) continue;
+        try {
+            return {vk::raii::DeviceMemory(*device.device, vk::MemoryAllocateInfo(needed.size, type)), type};
+        } catch (const vk::OutOfDeviceMemoryError& error) {
+            full = error;
         }
     }
     if (full) throw *full;
     throw Error(ExitCode::internal, "the device has no memory type for buffers");
 }
 
-/// A mapped buffer for one transfer. `before` and `after` run with its memory; `copy` records the transfer.
-template <typename Before, typename Copy, typename After>
-void through_staging(Device& device, std::uint64_t bytes, std::initializer_list<vk::MemoryPropertyFlags> wishes,
-                     Before before, Copy copy, After after) {
+/// The device's staging buffer, with room for so many bytes; it grows, and is kept.
+Device::Impl::Staging& staging_for(Device::Impl& device, std::uint64_t bytes) {
+    Device::Impl::Staging& staging = device.staging;
+    if (staging.bytes >= bytes) return staging;
+    staging = {};
+    const std::uint64_t size = std::bit_ceil(bytes);
+    using Usage = vk::BufferUsageFlagBits;
+    vk::raii::Buffer buffer(*device.device, vk::BufferCreateInfo({}, size, Usage::eTransferSrc | Usage::eTransferDst));
+    Allocation allocation = allocate(device, buffer, device.policy.staging_memory);
+    buffer.bindMemory(*allocation.memory, 0);
+    name_object(device, buffer, "staging");
+    auto* mapped = static_cast<std::byte*>(allocation.memory.mapMemory(0, VK_WHOLE_SIZE));
+    staging.memory.emplace(std::move(allocation.memory));
+    staging.buffer.emplace(std::move(buffer));
+    staging.mapped = mapped;
+    staging.bytes = size;
+    return staging;
+}
+
+/// Calls copy(staging, from, bytes) for all of `bytes`, a piece at a time.
+template <typename Copy> void through_staging(Device& device, std::uint64_t bytes, Copy copy) {
     guarded("copying through a staging buffer", [&] {
-        auto& impl = device.impl();
-        vk::raii::Buffer staging(*impl.device, vk::BufferCreateInfo({}, bytes,
-                                                                    vk::BufferUsageFlagBits::eTransferSrc |
-                                                                        vk::BufferUsageFlagBits::eTransferDst));
-        const Allocation allocation = allocate(impl, staging, wishes);
-        staging.bindMemory(*allocation.memory, 0);
-        auto* mapped = static_cast<std::byte*>(allocation.memory.mapMemory(0, bytes));
-        before(mapped);
-        run_once(device, "copying through a staging buffer",
-                 [&](vk::raii::CommandBuffer& commands) { copy(commands, *staging); });
-        after(mapped);
+        for (std::uint64_t from = 0; from < bytes; from += most_staged) {
+            const std::uint64_t piece = std::min(bytes - from, most_staged);
+            copy(staging_for(device.impl(), piece), from, piece);
+        }
     });
+}
+
+/// Copies on the device, and waits for it.
+void copy_buffer(Device& device, vk::Buffer from, vk::Buffer to, vk::BufferCopy region) {
+    run_once(device, "copying through a staging buffer",
+             [&](vk::raii::CommandBuffer& commands) { commands.copyBuffer(from, to, region); });
 }
 
 }  // namespace
@@ -125,21 +138,23 @@ Buffer::Buffer(Device& device, Binding binding, std::uint64_t bytes) : impl_(std
     impl.bytes = (std::max<std::uint64_t>(bytes, 16) + 15) / 16 * 16;  // whole texels
     impl.access = bound_buffer(binding).access;
     check_limits(impl);
-    check_heap(impl);
+    const std::vector<std::uint32_t> types = types_with_room(impl);
     guarded(fmt::format("allocating buffer '{}' of {} bytes ({} bytes are allocated)", impl.name, impl.bytes,
                         gpu.allocated),
             [&] {
                 impl.buffer.emplace(*gpu.device, vk::BufferCreateInfo({}, impl.bytes, usage_of(impl.access)));
-                Allocation allocation =
-                    allocate(gpu, *impl.buffer, {Memory::eDeviceLocal | mappable, Memory::eDeviceLocal});
+                Allocation allocation = allocate(gpu, *impl.buffer, types);
+                const MemoryType& type = gpu.facts.memory[allocation.type];
+                impl.heap = type.heap;
                 impl.memory.emplace(std::move(allocation.memory));
                 gpu.allocated += impl.bytes;
+                gpu.heap_in_use[impl.heap] += impl.bytes;
                 gpu.peak = std::max(gpu.peak, gpu.allocated);
                 impl.buffer->bindMemory(**impl.memory, 0);
                 name_object(gpu, *impl.buffer, impl.name);
-                if ((allocation.properties & mappable) == mappable) {
+                if (gpu.policy.maps_buffers && type.mappable) {
                     impl.mapped = static_cast<std::byte*>(impl.memory->mapMemory(0, VK_WHOLE_SIZE));
-                    impl.cached = bool(allocation.properties & Memory::eHostCached);
+                    impl.cached = type.cached;
                 }
                 if (const auto format = texel_format(impl.access)) {
                     impl.view.emplace(*gpu.device,
@@ -167,13 +182,10 @@ void Buffer::write(std::span<const std::byte> data, std::uint64_t offset) {
         std::memcpy(impl_->mapped + offset, data.data(), data.size());
         return;
     }
-    through_staging(
-        *impl_->device, data.size(), {mappable},
-        [&](std::byte* memory) { std::memcpy(memory, data.data(), data.size()); },
-        [&](vk::raii::CommandBuffer& commands, vk::Buffer staging) {
-            commands.copyBuffer(staging, **impl_->buffer, vk::BufferCopy(0, offset, data.size()));
-        },
-        [](std::byte*) {});
+    through_staging(*impl_->device, data.size(), [&](auto& staging, std::uint64_t from, std::uint64_t bytes) {
+        std::memcpy(staging.mapped, data.data() + from, bytes);
+        copy_buffer(*impl_->device, **staging.buffer, **impl_->buffer, {0, offset + from, bytes});
+    });
 }
 
 void Buffer::read(std::span<std::byte> data, std::uint64_t offset) const {
@@ -183,12 +195,10 @@ void Buffer::read(std::span<std::byte> data, std::uint64_t offset) const {
         std::memcpy(data.data(), impl_->mapped + offset, data.size());
         return;
     }
-    through_staging(
-        *impl_->device, data.size(), {mappable | Memory::eHostCached, mappable}, [](std::byte*) {},
-        [&](vk::raii::CommandBuffer& commands, vk::Buffer staging) {
-            commands.copyBuffer(**impl_->buffer, staging, vk::BufferCopy(offset, 0, data.size()));
-        },
-        [&](const std::byte* memory) { std::memcpy(data.data(), memory, data.size()); });
+    through_staging(*impl_->device, data.size(), [&](auto& staging, std::uint64_t from, std::uint64_t bytes) {
+        copy_buffer(*impl_->device, **impl_->buffer, **staging.buffer, {offset + from, 0, bytes});
+        std::memcpy(data.data() + from, staging.mapped, bytes);
+    });
 }
 
 }  // namespace vkcppm

@@ -14,11 +14,14 @@ struct Buffer::Impl {
     std::optional<vk::raii::DeviceMemory> memory;
     std::optional<vk::raii::Buffer> buffer;
     std::optional<vk::raii::BufferView> view;
-    std::byte* mapped = nullptr;  // null where the memory is not host visible
+    std::uint32_t heap = 0;
+    std::byte* mapped = nullptr;  // null where the host goes through staging copies
     bool cached = false;          // what is mapped is read as fast as any memory of the host
 
     ~Impl() {
-        if (memory) device->impl().allocated -= bytes;
+        if (!memory) return;
+        device->impl().allocated -= bytes;
+        device->impl().heap_in_use[heap] -= bytes;
     }
 };
 

@@ -14,11 +14,19 @@
 #include "shared/types.h"
 #include "vk/binding.h"
 #include "vk/device_impl.h"
+#include "vk/reconvergence.h"
 
 namespace vkcppm {
 namespace {
 
 constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
+/// What all features of one member look like, those of extensions that the headers do not know, too.
+struct PromiseFeature {
+    VkStructureType type{};
+    void* next = nullptr;
+    VkBool32 on = false;
+};
+
 constexpr const char* portability_subset = "VK_KHR_portability_subset";  // its macro is in vulkan_beta.h alone
 
 bool has(const std::vector<vk::ExtensionProperties>& extensions, const char* name) {
@@ -53,59 +61,93 @@ std::string version_text(std::uint32_t version) {
                        VK_API_VERSION_PATCH(version));
 }
 
-std::string type_name(vk::PhysicalDeviceType type) {
+DeviceType type_of(vk::PhysicalDeviceType type) {
     switch (type) {
-        case vk::PhysicalDeviceType::eDiscreteGpu: return "discrete";
-        case vk::PhysicalDeviceType::eIntegratedGpu: return "integrated";
-        case vk::PhysicalDeviceType::eVirtualGpu: return "virtual";
-        case vk::PhysicalDeviceType::eCpu: return "cpu";
-        default: return "other";
+        case vk::PhysicalDeviceType::eDiscreteGpu: return DeviceType::discrete;
+        case vk::PhysicalDeviceType::eIntegratedGpu: return DeviceType::integrated;
+        case vk::PhysicalDeviceType::eVirtualGpu: return DeviceType::virtual_gpu;
+        case vk::PhysicalDeviceType::eCpu: return DeviceType::cpu;
+        default: return DeviceType::other;
     }
 }
 
-int preference(const DeviceInfo& info) {
-    const std::vector<std::string> order = {"discrete", "integrated", "virtual", "other", "cpu"};
-    return int(std::find(order.begin(), order.end(), info.type) - order.begin());
-}
-
+/// A queue for kernels, if there is one with time stamps.
 std::optional<std::uint32_t> compute_family(const vk::raii::PhysicalDevice& physical) {
     const auto families = physical.getQueueFamilyProperties();
+    std::optional<std::uint32_t> first;
     for (std::uint32_t i = 0; i < families.size(); ++i) {
-        if ((families[i].queueFlags & vk::QueueFlagBits::eCompute) && families[i].timestampValidBits > 0) return i;
+        if (!(families[i].queueFlags & vk::QueueFlagBits::eCompute)) continue;
+        if (families[i].timestampValidBits > 0) return i;
+        if (!first) first = i;
     }
-    return std::nullopt;
+    return first;
 }
 
-/// Why the kernels cannot run there, or empty.
-std::string missing(const vk::raii::PhysicalDevice& physical) {
+/// Heaps and types of memory.
+void add_memory(DeviceFacts& facts, const vk::raii::PhysicalDevice& physical) {
+    using Memory = vk::MemoryPropertyFlagBits;
+    constexpr vk::MemoryPropertyFlags mappable = Memory::eHostVisible | Memory::eHostCoherent;
+    constexpr vk::MemoryPropertyFlags known = Memory::eDeviceLocal | mappable | Memory::eHostCached;
+    const auto memory = physical.getMemoryProperties();
+    for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
+        // The memory of software Vulkan is the host's, but Mesa 22.3 says that of every machine.
+        constexpr std::uint64_t said_of_all = std::uint64_t(2) << 30;
+        const std::uint64_t said = memory.memoryHeaps[i].size;
+        facts.heaps.push_back(facts.type == DeviceType::cpu && said == said_of_all ? total_memory() : said);
+    }
+    for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
+        const vk::MemoryPropertyFlags has = memory.memoryTypes[i].propertyFlags;
+        facts.memory.push_back({.heap = memory.memoryTypes[i].heapIndex,
+                                .device_local = bool(has & Memory::eDeviceLocal),
+                                .mappable = (has & mappable) == mappable,
+                                .cached = bool(has & Memory::eHostCached),
+                                .special = bool(has & ~known)});
+    }
+}
+
+/// The strongest promise of convergence that the device has a feature for.
+Reconvergence promised_by(const vk::raii::PhysicalDevice& physical) {
+    const auto extensions = physical.enumerateDeviceExtensionProperties();
+    for (const Promise& promise : promises) {
+        if (!has(extensions, promise.extension)) continue;
+        PromiseFeature feature{VkStructureType(promise.feature_type)};
+        VkPhysicalDeviceFeatures2 all{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &feature, {}};
+        physical.getDispatcher()->vkGetPhysicalDeviceFeatures2(*physical, &all);
+        if (feature.on) return promise.of;
+    }
+    return Reconvergence::none;
+}
+
+DeviceFacts facts_of(const vk::raii::PhysicalDevice& physical) {
+    DeviceFacts facts;
     const auto properties = physical.getProperties();
     const auto& limits = properties.limits;
-    if (properties.apiVersion < VK_API_VERSION_1_2) return "Vulkan 1.2 is needed";
-    const auto chain = physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
-    if (!chain.get<vk::PhysicalDeviceVulkan12Features>().scalarBlockLayout) return "scalarBlockLayout is needed";
-    const auto subgroup = physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupProperties>()
-                              .get<vk::PhysicalDeviceSubgroupProperties>();
-    const auto needed = vk::SubgroupFeatureFlagBits::eBallot;
-    if (!(subgroup.supportedStages & vk::ShaderStageFlagBits::eCompute) ||
-        (subgroup.supportedOperations & needed) != needed) {
-        return "subgroup ballots in compute shaders are needed";
-    }
-    if (!compute_family(physical)) return "no compute queue with timestamps";
-    const auto with = [](bool (*has)(Access)) {
-        return std::uint32_t(std::ranges::count_if(bound_buffers, has, &BoundBuffer::access));
-    };
-    const std::uint32_t storage = with(has_storage);
-    if (std::min(limits.maxPerStageDescriptorStorageBuffers, limits.maxDescriptorSetStorageBuffers) < storage) {
-        return fmt::format("{} storage buffers a stage, {} are needed", limits.maxPerStageDescriptorStorageBuffers,
-                           storage);
-    }
-    const std::uint32_t texels = with(has_texels);
-    if (std::min(limits.maxPerStageDescriptorSampledImages, limits.maxDescriptorSetSampledImages) < texels) {
-        return fmt::format("{} texel buffers a stage, {} are needed", limits.maxPerStageDescriptorSampledImages,
-                           texels);
-    }
-    if (limits.maxPushConstantsSize < sizeof(gpu::Launch)) return "push constants are too small";
-    return "";
+    facts.type = type_of(properties.deviceType);
+    facts.version_major = VK_API_VERSION_MAJOR(properties.apiVersion);
+    facts.version_minor = VK_API_VERSION_MINOR(properties.apiVersion);
+    facts.storage_buffers = std::min(limits.maxPerStageDescriptorStorageBuffers, limits.maxDescriptorSetStorageBuffers);
+    facts.texel_buffers = std::min(limits.maxPerStageDescriptorSampledImages, limits.maxDescriptorSetSampledImages);
+    facts.uniform_buffers = std::min(limits.maxPerStageDescriptorUniformBuffers, limits.maxDescriptorSetUniformBuffers);
+    facts.resources = limits.maxPerStageResources;
+    facts.group_invocations = std::min(limits.maxComputeWorkGroupInvocations, limits.maxComputeWorkGroupSize[0]);
+    facts.push_constant_bytes = limits.maxPushConstantsSize;
+    facts.texels = limits.maxTexelBufferElements;
+    facts.storage_bytes = limits.maxStorageBufferRange;
+    facts.uniform_bytes = limits.maxUniformBufferRange;
+    facts.computes = compute_family(physical).has_value();
+    add_memory(facts, physical);
+    if (properties.apiVersion < VK_API_VERSION_1_2) return facts;  // it knows nothing of what follows
+    const auto features = physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
+    facts.scalar_block_layout = features.get<vk::PhysicalDeviceVulkan12Features>().scalarBlockLayout;
+    const auto chain = physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupProperties,
+                                               vk::PhysicalDeviceDriverProperties>();
+    const auto& subgroup = chain.get<vk::PhysicalDeviceSubgroupProperties>();
+    facts.ballots = (subgroup.supportedStages & vk::ShaderStageFlagBits::eCompute) &&
+                    (subgroup.supportedOperations & vk::SubgroupFeatureFlagBits::eBallot);
+    facts.subgroup_size = subgroup.subgroupSize;
+    facts.llvmpipe = chain.get<vk::PhysicalDeviceDriverProperties>().driverID == vk::DriverId::eMesaLlvmpipe;
+    facts.reconvergence = promised_by(physical);
+    return facts;
 }
 
 std::string uuid_text(const vk::ArrayWrapper1D<uint8_t, VK_UUID_SIZE>& uuid) {
@@ -117,44 +159,51 @@ std::string uuid_text(const vk::ArrayWrapper1D<uint8_t, VK_UUID_SIZE>& uuid) {
     return text;
 }
 
-DeviceInfo describe(const vk::raii::PhysicalDevice& physical, std::uint32_t index) {
+/// A physical device, what it says of itself and how it is driven.
+struct Found {
+    vk::raii::PhysicalDevice physical;
+    DeviceFacts facts;
+    DevicePolicy policy;
+    DeviceInfo info;
+};
+
+Found describe(vk::raii::PhysicalDevice physical, std::uint32_t index, std::optional<Way> way) {
     const auto chain = physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceIDProperties,
                                                vk::PhysicalDeviceDriverProperties>();
     const auto& properties = chain.get<vk::PhysicalDeviceProperties2>().properties;
     const auto& driver = chain.get<vk::PhysicalDeviceDriverProperties>();
+    DeviceFacts facts = facts_of(physical);
+    DevicePolicy policy = policy_of(facts, std::thread::hardware_concurrency(), way);
     DeviceInfo info;
     info.index = index;
     info.name = properties.deviceName.data();
-    info.type = type_name(properties.deviceType);
+    info.type = facts.type;
     info.driver = fmt::format("{} {}", driver.driverName.data(), driver.driverInfo.data());
     info.api_version = version_text(properties.apiVersion);
     info.uuid = uuid_text(chain.get<vk::PhysicalDeviceIDProperties>().deviceUUID);
-    const auto memory = physical.getMemoryProperties();
-    for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
-        if (memory.memoryHeaps[i].flags & vk::MemoryHeapFlagBits::eDeviceLocal) {
-            info.memory_bytes = std::max<std::uint64_t>(info.memory_bytes, memory.memoryHeaps[i].size);
-        }
-    }
-    // The memory of software Vulkan is the host's, but Mesa 22.3 says that of every machine.
-    constexpr std::uint64_t said_of_all = std::uint64_t(2) << 30;
-    if (info.type == "cpu" && info.memory_bytes == said_of_all) info.memory_bytes = total_memory();
-    info.unusable = missing(physical);
-    return info;
+    info.memory_bytes = policy.memory_bytes;
+    info.unusable = lacking(facts);
+    info.policy = text_of(policy);
+    return {std::move(physical), std::move(facts), std::move(policy), std::move(info)};
 }
 
-/// Physical devices with their descriptions; none where there is no driver.
-std::vector<std::pair<vk::raii::PhysicalDevice, DeviceInfo>> enumerate(const vk::raii::Instance& instance) {
-    std::vector<std::pair<vk::raii::PhysicalDevice, DeviceInfo>> found;
+/// All physical devices; none where there is no driver.
+std::vector<Found> enumerate(const vk::raii::Instance& instance, std::optional<Way> way) {
+    std::vector<Found> found;
     try {
         vk::raii::PhysicalDevices all(instance);
-        for (std::uint32_t i = 0; i < all.size(); ++i) {
-            DeviceInfo info = describe(all[i], i);
-            found.emplace_back(std::move(all[i]), std::move(info));
-        }
+        for (std::uint32_t i = 0; i < all.size(); ++i) found.push_back(describe(std::move(all[i]), i, way));
     } catch (const vk::SystemError&) {
         // A loader without a driver answers with an error: that is a machine without devices.
     }
     return found;
+}
+
+/// Of those that can be used the first of the fastest kind, or the end.
+std::vector<Found>::iterator best_of(std::vector<Found>& devices) {
+    const auto rank = [](const Found& device) { return std::pair(!device.info.unusable.empty(), device.facts.type); };
+    const auto best = std::ranges::min_element(devices, {}, rank);
+    return best == devices.end() || best->info.unusable.empty() ? best : devices.end();
 }
 
 bool matches(const DeviceInfo& info, const std::string& select) {
@@ -206,8 +255,8 @@ void guarded(const std::string& doing, const std::function<void()>& work) {
 void run_once(Device& device, const std::string& doing, const std::function<void(vk::raii::CommandBuffer&)>& record) {
     guarded(doing, [&] {
         auto& impl = device.impl();
-        vk::raii::CommandBuffers buffers(*impl.device, {**impl.pool, vk::CommandBufferLevel::ePrimary, 1});
-        auto& commands = buffers.front();
+        auto& commands = *impl.transfers;
+        commands.reset();
         commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
         record(commands);
         using Stage = vk::PipelineStageFlagBits;
@@ -220,12 +269,12 @@ void run_once(Device& device, const std::string& doing, const std::function<void
                                  Stage::eHost | Stage::eComputeShader | Stage::eDrawIndirect | Stage::eTransfer, {},
                                  barrier, {}, {});
         commands.end();
-        vk::raii::Fence fence(*impl.device, vk::FenceCreateInfo());
         const vk::CommandBuffer raw = *commands;
-        impl.queue->submit(vk::SubmitInfo({}, {}, raw), *fence);
-        if (impl.device->waitForFences(*fence, true, UINT64_MAX) != vk::Result::eSuccess) {
+        impl.queue->submit(vk::SubmitInfo({}, {}, raw), **impl.transferred);
+        if (impl.device->waitForFences(**impl.transferred, true, UINT64_MAX) != vk::Result::eSuccess) {
             throw Error(ExitCode::device_lost, fmt::format("the device did not finish while {}", doing));
         }
+        impl.device->resetFences(**impl.transferred);
     });
 }
 
@@ -245,10 +294,13 @@ VulkanInfo vulkan_info() {
 
 std::vector<DeviceInfo> list_devices() {
     std::vector<DeviceInfo> list;
+    const std::optional<Way> way = asked_way();
     try {
         vk::raii::Context context;
         const vk::raii::Instance instance = make_instance(context, false);
-        for (auto& [physical, info] : enumerate(instance)) list.push_back(info);
+        std::vector<Found> devices = enumerate(instance, way);
+        if (const auto best = best_of(devices); best != devices.end()) best->info.first_choice = true;
+        for (const Found& device : devices) list.push_back(device.info);
     } catch (const std::exception&) {
         // No Vulkan loader: no devices.
     }
@@ -257,6 +309,7 @@ std::vector<DeviceInfo> list_devices() {
 
 Device::Device(const Options& options) : impl_(std::make_unique<Impl>()) {
     Impl& impl = *impl_;
+    const std::optional<Way> way = asked_way();
     try {
         impl.instance.emplace(make_instance(impl.context, options.validate));
     } catch (const vk::LayerNotPresentError&) {
@@ -273,39 +326,33 @@ Device::Device(const Options& options) : impl_(std::make_unique<Impl>()) {
                                                    Type::eValidation | Type::ePerformance, on_message, &impl));
     }
 
-    auto devices = enumerate(*impl.instance);
+    auto devices = enumerate(*impl.instance, way);
     std::vector<std::string> names;
-    for (const auto& [physical, info] : devices) {
+    for (const Found& device : devices) {
+        const DeviceInfo& info = device.info;
         names.push_back(info.unusable.empty()
                             ? fmt::format("{} '{}'", info.index, info.name)
                             : fmt::format("{} '{}' (unusable: {})", info.index, info.name, info.unusable));
     }
-    std::erase_if(devices, [&](const auto& device) {
-        return !device.second.unusable.empty() || (!options.select.empty() && !matches(device.second, options.select));
-    });
-    if (devices.empty()) {
+    std::erase_if(
+        devices, [&](const Found& device) { return !options.select.empty() && !matches(device.info, options.select); });
+    const auto best = best_of(devices);
+    if (best == devices.end()) {
         const std::string wanted = options.select.empty() ? "" : fmt::format(" that matches '{}'", options.select);
         throw Error(ExitCode::no_device, fmt::format("no usable Vulkan device{}; there are: {}", wanted,
                                                      names.empty() ? fmt::format("none; {}", driver_advice)
                                                                    : fmt::format("{}", fmt::join(names, ", "))));
     }
-    auto best = std::min_element(devices.begin(), devices.end(), [](const auto& a, const auto& b) {
-        return preference(a.second) < preference(b.second);
-    });
-    impl.physical.emplace(std::move(best->first));
-    impl.info = best->second;
-
-    const auto chain =
-        impl.physical->getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupProperties,
-                                      vk::PhysicalDeviceDriverProperties>();
-    impl.limits = chain.get<vk::PhysicalDeviceProperties2>().properties.limits;
-    impl.subgroup_size = chain.get<vk::PhysicalDeviceSubgroupProperties>().subgroupSize;
-    impl.loop_limit = chain.get<vk::PhysicalDeviceDriverProperties>().driverID == vk::DriverId::eMesaLlvmpipe;
-    impl.memory = impl.physical->getMemoryProperties();
+    impl.physical.emplace(std::move(best->physical));
+    impl.info = best->info;
+    impl.facts = best->facts;
+    impl.policy = best->policy;
+    impl.limits = impl.physical->getProperties().limits;
+    impl.heap_in_use.resize(impl.facts.heaps.size());
 
     guarded("creating the device", [&] {
         const std::uint32_t family = *compute_family(*impl.physical);
-        impl.timestamp_bits = impl.physical->getQueueFamilyProperties()[family].timestampValidBits;
+        impl.stamp_bits = impl.physical->getQueueFamilyProperties()[family].timestampValidBits;
         const float priority = 1.0f;
         const vk::DeviceQueueCreateInfo queue({}, family, 1, &priority);
         vk::PhysicalDeviceVulkan12Features features;
@@ -314,12 +361,22 @@ Device::Device(const Options& options) : impl_(std::make_unique<Impl>()) {
         if (has(impl.physical->enumerateDeviceExtensionProperties(), portability_subset)) {
             extensions.push_back(portability_subset);
         }
+        PromiseFeature feature{};
+        for (const Promise& promise : promises) {
+            if (promise.of != impl.policy.reconvergence) continue;
+            feature = {VkStructureType(promise.feature_type), nullptr, true};
+            features.pNext = &feature;
+            extensions.push_back(promise.extension);
+        }
         vk::DeviceCreateInfo info({}, queue, {}, extensions);
         info.pNext = &features;
         impl.device.emplace(*impl.physical, info);
         impl.queue.emplace(*impl.device, family, 0);
         impl.pool.emplace(*impl.device,
                           vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, family));
+        vk::raii::CommandBuffers buffers(*impl.device, {**impl.pool, vk::CommandBufferLevel::ePrimary, 1});
+        impl.transfers.emplace(std::move(buffers.front()));
+        impl.transferred.emplace(*impl.device, vk::FenceCreateInfo());
         impl.pipelines.emplace(*impl.device, vk::PipelineCacheCreateInfo());
         const std::vector<vk::DescriptorSetLayoutBinding> bindings = layout_bindings();
         impl.set_layout.emplace(*impl.device, vk::DescriptorSetLayoutCreateInfo({}, bindings));
@@ -340,25 +397,14 @@ std::vector<std::string> Device::validation_messages() const {
 
 bool Device::validating() const { return impl_->messenger.has_value(); }
 
-std::uint32_t Device::step_budget() const {
-    // llvmpipe of Mesa 22.3 ends every loop, in silence, once the loops of a SIMD group have made 65,535 trips in all.
-    // A group's trips are at most the sum over its lanes; a kernel may overdraw its budget by a few hundred.
-    // Elsewhere: counters of 16 bits of the gather never overflow in a dispatch.
-    return impl_->loop_limit ? 65535 / impl_->subgroup_size - 1024 : 65535 - 1024;
-}
-
-std::uint32_t Device::busy_lanes() const {
-    if (impl_->info.type != "cpu") return 1u << 17;
-    // Few, so that none is idle for long while the last of its SIMD group ends; enough work groups for every core.
-    return 512 * std::max(1u, std::thread::hardware_concurrency());
-}
+const DevicePolicy& Device::policy() const { return impl_->policy; }
 
 std::uint64_t Device::largest_buffer(Access access) const {
-    const auto& limits = impl_->limits;
+    const DeviceFacts& facts = impl_->facts;
     std::uint64_t bytes = std::numeric_limits<std::uint64_t>::max();
-    if (access == Access::uniform) bytes = limits.maxUniformBufferRange;
-    if (has_storage(access)) bytes = limits.maxStorageBufferRange;
-    if (has_texels(access)) bytes = std::min(bytes, limits.maxTexelBufferElements * texel_bytes(access));
+    if (access == Access::uniform) bytes = facts.uniform_bytes;
+    if (has_storage(access)) bytes = facts.storage_bytes;
+    if (has_texels(access)) bytes = std::min(bytes, facts.texels * texel_bytes(access));
     return bytes;
 }
 

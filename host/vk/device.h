@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vk/binding.h"
+#include "vk/policy.h"
 
 namespace vkcppm {
 
@@ -16,12 +17,14 @@ namespace vkcppm {
 struct DeviceInfo {
     std::uint32_t index = 0;
     std::string name;
-    std::string type;                // "cpu", "integrated", "discrete", "virtual", "other"
+    DeviceType type = DeviceType::other;
     std::string driver;              // name and version
     std::string api_version;         // "1.3.230"
     std::string uuid;                // 32 hexadecimal digits in 8-4-4-4-12 form
-    std::uint64_t memory_bytes = 0;  // largest device-local heap; of software Vulkan the host's memory
+    std::uint64_t memory_bytes = 0;  // that buffers can have; of software Vulkan the host's memory
     std::string unusable;            // empty, or why the device cannot run the kernels
+    bool first_choice = false;       // it is used where none is asked for
+    std::string policy;              // how it is driven, in a line
 };
 
 /// What of Vulkan is installed beside the drivers.
@@ -35,7 +38,8 @@ VulkanInfo vulkan_info();
 inline constexpr const char* driver_advice =
     "install mesa-vulkan-drivers (Debian, Ubuntu, Fedora) or vulkan-swrast (Arch), which need no graphics card";
 
-/// All devices of all drivers, usable or not; empty where there is no Vulkan loader or driver.
+/// All devices of all drivers, usable or not; empty where there is no Vulkan loader or driver. Throws Error(usage)
+/// where VKCPPM_POLICY is no way to drive a device.
 std::vector<DeviceInfo> list_devices();
 
 class Device {
@@ -45,7 +49,8 @@ public:
         bool validate = false;  // load the validation layer with synchronization checks; its errors are collected
         bool cache = true;      // compiled kernels may be kept from run to run (app/pipeline_cache.h)
     };
-    /// Throws Error(no_device) where none is usable or none matches, with the devices that there are.
+    /// Throws Error(no_device) where none is usable or none matches, with the devices that there are, and Error(usage)
+    /// where VKCPPM_POLICY is no way to drive it.
     explicit Device(const Options& options);
     ~Device();
     Device(const Device&) = delete;
@@ -56,10 +61,7 @@ public:
     std::vector<std::string> validation_messages() const;
     /// True where the validation layer was asked for and is loaded.
     bool validating() const;
-    /// Loop trips that one invocation may make in one dispatch, with certainty within the driver's limits.
-    std::uint32_t step_budget() const;
-    /// Invocations that keep it busy: work with a choice is cut into about as many.
-    std::uint32_t busy_lanes() const;
+    const DevicePolicy& policy() const;
     /// Bytes of the largest buffer of that access: what is but read as texels may be larger than what is bound as a
     /// storage buffer.
     std::uint64_t largest_buffer(Access access) const;

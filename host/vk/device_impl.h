@@ -25,6 +25,16 @@ struct Device::Impl {
     std::optional<vk::raii::Device> device;
     std::optional<vk::raii::Queue> queue;
     std::optional<vk::raii::CommandPool> pool;
+    std::optional<vk::raii::CommandBuffer> transfers;  // of run_once()
+    std::optional<vk::raii::Fence> transferred;
+    /// What goes between the host and buffers that are not mapped.
+    struct Staging {
+        std::optional<vk::raii::DeviceMemory> memory;
+        std::optional<vk::raii::Buffer> buffer;
+        std::byte* mapped = nullptr;
+        std::uint64_t bytes = 0;
+    };
+    Staging staging;
     std::optional<vk::raii::PipelineCache> pipelines;
     // All kernels have the same bindings, so that those of the same words and specialization can share a pipeline:
     // integrators of one scene differ in a few kernels alone.
@@ -33,12 +43,12 @@ struct Device::Impl {
     // By the hash of the words and the specialization.
     std::map<std::pair<std::uint64_t, std::map<std::uint32_t, std::uint32_t>>, std::shared_ptr<vk::raii::Pipeline>>
         made;
+    DeviceFacts facts;
+    DevicePolicy policy;
     vk::PhysicalDeviceLimits limits;
-    vk::PhysicalDeviceMemoryProperties memory;
-    std::uint32_t subgroup_size = 1;
-    std::uint32_t timestamp_bits = 64;  // that count
-    bool loop_limit = false;            // a driver that stops all loops of a SIMD group after 65,535 trips
-    std::uint64_t allocated = 0;        // bytes of live buffers
+    std::uint32_t stamp_bits = 64;           // of time stamps, that count; 0: there are none
+    std::uint64_t allocated = 0;             // bytes of live buffers
+    std::vector<std::uint64_t> heap_in_use;  // the same of each heap
     std::uint64_t peak = 0;
     mutable std::mutex messages_mutex;
     std::vector<std::string> messages;

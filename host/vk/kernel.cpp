@@ -7,8 +7,10 @@
 #include <fmt/format.h>
 
 #include "core/fnv1a.h"
+#include "core/process.h"
 #include "vk/buffer_impl.h"
 #include "vk/device_impl.h"
+#include "vk/reconvergence.h"
 
 namespace vkcppm {
 namespace {
@@ -97,7 +99,8 @@ Kernel::Kernel(Device& device, std::string name, std::span<const std::uint32_t> 
     if (!made) {
         guarded(fmt::format("creating kernel '{}'", impl_->name), [&] {
             auto& gpu = *device.impl().device;
-            const vk::raii::ShaderModule module(gpu, vk::ShaderModuleCreateInfo({}, spirv.size_bytes(), spirv.data()));
+            const std::vector<std::uint32_t> words = with_promise(spirv, device.policy().reconvergence);
+            const vk::raii::ShaderModule module(gpu, vk::ShaderModuleCreateInfo({}, words));
             std::vector<vk::SpecializationMapEntry> entries;
             std::vector<std::uint32_t> values;
             for (const auto& [id, value] : own) {
@@ -164,6 +167,7 @@ void Commands::use(std::uint32_t set) {
 /// Takes the time once all kernels before have ended. A stamp before them could be taken while the driver still holds
 /// back the barrier in front of a launch, whose time would then count for two.
 void Commands::stamp() {
+    if (impl_->device->impl().stamp_bits == 0) return;
     const std::uint32_t pool = impl_->stamped / stamps_a_pool, query = impl_->stamped % stamps_a_pool;
     if (pool == impl_->stamps.size()) {
         impl_->stamps.emplace_back(*impl_->device->impl().device,
@@ -223,11 +227,19 @@ std::vector<Timing> Commands::finish() {
                                          barrier, {}, {});
         impl_->commands->end();
         const vk::CommandBuffer raw = **impl_->commands;
+        const double begun = wall_now();
         gpu.queue->submit(vk::SubmitInfo({}, {}, raw), **impl_->fence);
         if (gpu.device->waitForFences(**impl_->fence, true, UINT64_MAX) != vk::Result::eSuccess) {
             throw Error(ExitCode::device_lost, "the device did not finish its kernels");
         }
+        const double waited = wall_now() - begun;
         gpu.device->resetFences(**impl_->fence);
+        if (gpu.stamp_bits == 0) {
+            for (const Kernel* kernel : impl_->launched) {
+                timings.push_back({kernel, waited / double(impl_->launched.size())});
+            }
+            return;
+        }
         std::vector<std::uint64_t> stamps;
         while (stamps.size() < impl_->stamped) {
             const auto count = std::uint32_t(std::min<std::size_t>(stamps_a_pool, impl_->stamped - stamps.size()));
@@ -236,7 +248,7 @@ std::vector<Timing> Commands::finish() {
                 vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
             stamps.insert(stamps.end(), of_pool.begin(), of_pool.end());
         }
-        const std::uint64_t valid = ~std::uint64_t(0) >> (64 - gpu.timestamp_bits);  // the clock begins again after it
+        const std::uint64_t valid = ~std::uint64_t(0) >> (64 - gpu.stamp_bits);  // the clock begins again after it
         for (std::size_t i = 0; i < impl_->launched.size(); ++i) {
             const double ticks = double((stamps[i + 1] - stamps[i]) & valid);
             timings.push_back({impl_->launched[i], ticks * gpu.limits.timestampPeriod * 1e-9});

@@ -60,7 +60,7 @@ private:
 };
 
 /// Device time of one launch of a kernel, by timestamps: from the end of the launch before it, or the begin of all, to
-/// its own.
+/// its own. Where the device has none: an equal share of the time that the host waited for all.
 struct Timing {
     const Kernel* kernel = nullptr;
     double seconds = 0.0;

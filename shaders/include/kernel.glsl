@@ -19,6 +19,7 @@ layout(constant_id = SPEC_DIGIT_BITS) const uint DIGIT_BITS = 7;
 layout(constant_id = SPEC_NODE_BITS) const uint NODE_BITS = 20;
 layout(constant_id = SPEC_LEVELS) const uint LEVELS = GRID_LEVELS;
 layout(constant_id = SPEC_WAITS) const uint WAITS = 0u;
+layout(constant_id = SPEC_DEALS) const uint DEALS = 1u;
 
 #define HAS_FEATURE(bit, NAME, words) const bool HAS_##NAME = (FEATURES & FEATURE_##NAME) != 0u;
 #define HAS_FEATURE_OF_MATERIAL(bit, NAME, words, trait) HAS_FEATURE(bit, NAME, words)

@@ -45,13 +45,16 @@ struct Traversal {
 // From `origin` to the nearest hit so far.
 float distance_left(Traversal t) { return HAS_INSTANCES ? t.hit.t - t.begin : t.hit.t; }
 
+#define PARALLEL 1e-37  // of a determinant: 1 / x is still a number, also where tiny numbers are taken to be 0
+
 void intersect_triangle(uint index, inout Traversal t) {
     int texel = int(index) * 3;
     vec3 v0 = texelFetch(triangles_texels, texel).xyz;
     vec4 e1 = texelFetch(triangles_texels, texel + 1);
     vec4 e2 = texelFetch(triangles_texels, texel + 2);
     vec3 p = cross(t.direction, e2.xyz);
-    float inverse = 1.0 / dot(e1.xyz, p);
+    float determinant = dot(e1.xyz, p);
+    float inverse = 1.0 / determinant;
     vec3 s = t.origin - v0;
     // Both triangles of a shared edge accept a hit within rounding of it: closed meshes stay closed.
     vec2 slack = vec2(e1.w, e2.w) * (max(abs(s.x), max(abs(s.y), abs(s.z))) * abs(inverse));
@@ -60,10 +63,10 @@ void intersect_triangle(uint index, inout Traversal t) {
     vec3 q = cross(s, e1.xyz);
     float v = dot(t.direction, q) * inverse;
     float distance = dot(e2.xyz, q) * inverse;
-    // A parallel ray divides by zero: u, v and the distance are then infinite or NaN and a comparison fails.
+    // A parallel ray divides by zero. Comparisons with NaN fail, but a compiler may take it that there is none.
     // At the tip of a needle the third edge alone would let pass what is far beyond it.
     if (u >= -slack.x && v >= -slack.y && u + v <= 1.0 + max(slack.x, slack.y) && u <= 1.0 + slack.x &&
-        v <= 1.0 + slack.y && distance > 0.0 && distance < distance_left(t)) {
+        v <= 1.0 + slack.y && distance > 0.0 && distance < distance_left(t) && abs(determinant) > PARALLEL) {
         t.hit = Hit(HAS_INSTANCES ? t.begin + distance : distance, index, vec2(u, v), t.instance);
     }
 }
@@ -137,12 +140,17 @@ Traversal no_traversal() {
 // Groups on the stack that are not to be taken: in an instance those of the scene's tree.
 #define BOTTOM(t) (HAS_INSTANCES ? (t).bottom : 0u)
 
+// How many lanes of the SIMD group say so. Software Vulkan makes a ballot in a third of the time of a sum or a vote.
+uint lanes(bool condition) { return subgroupBallotBitCount(subgroupBallot(condition)); }
+
 // Where `wants`: takes the nearest waiting child that is not behind the hit into children and slot, and wants no more.
 // Software Vulkan runs a loop once whatever its condition: this one is left at its end and most often runs just once.
+// It is left by all lanes together: left by each on a trip of its own, SwiftShader gives them values of others' last
+// trip. A lane that wants no more changes nothing.
 // A macro, because it stands in the innermost loop, where copies of the traversal in and out of a function cost time.
 // It uses the names t, steps, stack, wants, children and slot of traverse().
 #define TAKE_WAITING()                                                                        \
-    while (true) {                                                                            \
+    do {                                                                                      \
         bool pops = wants && t.group == NO_GROUP && t.top > BOTTOM(t);                        \
         t.group = pops ? t.below : t.group;                                                   \
         t.top -= uint(pops);                                                                  \
@@ -154,8 +162,7 @@ Traversal no_traversal() {
         t.group = takes ? group_rest(t.group) : looks ? NO_GROUP : t.group;                   \
         steps -= int(looks);                                                                  \
         wants = wants && !takes;                                                              \
-        if (!wants || t.top == BOTTOM(t)) break;                                              \
-    }
+    } while (lanes(wants && t.top != BOTTOM(t)) > 0u);
 
 bool is_instance(uint node) { return HAS_INSTANCES && node != NO_NODE && (node & BVH_ENTER) != 0u; }
 
@@ -209,9 +216,6 @@ void leave_instance(inout Traversal t) {
     t.instance = NO_INSTANCE;
     t.bottom = 0u;
 }
-
-// How many lanes of the SIMD group say so. Software Vulkan makes a ballot in a third of the time of a sum or a vote.
-uint lanes(bool condition) { return subgroupBallotBitCount(subgroupBallot(condition)); }
 
 // Whether the SIMD group should leave what `busy` lanes of it do, for what the rest of `all` wait for: when none is
 // busy, or at most `share` times as many as wait.

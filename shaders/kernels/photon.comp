@@ -1,13 +1,14 @@
 #version 460
-// Light paths: the lanes of a SIMD group (subgroup) share `photons_per_lane` paths for each of them, and a lane takes
-// the next one when its own ends, so that none is idle before all are taken. Which lane traces a path changes nothing:
-// its photons are found by the path. One invocation a lane. Reads the scene and the lights; writes photons [lanes x
-// capacity], photon_flux, how many photons a path has stored and where (counters), paths. O(paths x bounces x log
-// triangles). Fails by running out of steps (goes on next round) or of slots (counts on without storing, reports the
-// number needed).
-// Assumed of convergence, which Vulkan 1.2 does not promise: lanes that have gone on by `continue` are back together at
-// the ballots at the head of the loop, else two lanes would take one path; and a later round runs the same lanes in the
-// same subgroup, for each keeps the path that the subgroup takes next (PathState::next).
+// Light paths, `photons_per_lane` for each lane. Where DEALS, the lanes of a SIMD group (subgroup) share theirs, and a
+// lane takes the next one when its own ends, so that none is idle before all are taken. Which lane traces a path
+// changes nothing: its photons are found by the path. One invocation a lane. Reads the scene and the lights; writes
+// photons [lanes x capacity], photon_flux, how many photons a path has stored and where (counters), paths. O(paths x
+// bounces x log triangles). Fails by running out of steps (goes on next round) or of slots (counts on without storing,
+// reports the number needed).
+// Where DEALS it is assumed, and Vulkan 1.2 does not promise, that lanes are together again at the head of the loop,
+// else two would take one path; and that a later round runs the same lanes in the same subgroup, as each keeps what the
+// subgroup takes next (PathState::next). So paths are dealt where the device promises the first, and where it is seen
+// to hold (host/vk/policy.cpp); else no lane hangs on another.
 #include "include/kernel.glsl"
 #include "include/bounds.glsl"
 #include "include/bsdf.glsl"
@@ -160,12 +161,18 @@ void end_light_path(inout PathState state, uint slot) {
     state.met = 0u;
 }
 
-// Where the lane has no path: takes the next one of its subgroup's, up to `end`; false where there is none left.
+// Where the lane has no path: takes the next one, of its own or where DEALS of its subgroup's, up to `end`; false where
+// there is none left.
 bool take_path(inout PathState state, bool running, uint end) {
     bool wants = running && state.path == NO_PATH;
-    uvec4 wanting = subgroupBallot(wants);
-    uint taken = state.next + subgroupBallotExclusiveBitCount(wanting);
-    state.next += subgroupBallotBitCount(wanting);
+    uint taken = state.next;
+    if (DEALS != 0u) {
+        uvec4 wanting = subgroupBallot(wants);
+        taken += subgroupBallotExclusiveBitCount(wanting);
+        state.next += subgroupBallotBitCount(wanting);
+    } else {
+        state.next += uint(wants);
+    }
     if (wants) {
         running = taken < end;
         state.path = running ? taken : NO_PATH;
@@ -177,8 +184,11 @@ bool take_path(inout PathState state, bool running, uint end) {
 void main() {
     uint lane = invocation();
     if (lane >= params.photon_lanes || blocked(PASS_PHOTON | PASS_CAPACITY)) return;
-    uint share = gl_SubgroupSize * params.photons_per_lane;
-    uint first = min((work_group() * gl_NumSubgroups + gl_SubgroupID) * share, params.photons);
+    // Not gl_SubgroupSize: a kernel may run with fewer lanes than the driver says of all.
+    uint sharing = DEALS != 0u ? (gl_WorkGroupSize.x + gl_NumSubgroups - 1u) / gl_NumSubgroups : 1u;
+    uint share = sharing * params.photons_per_lane;
+    uint sharers = DEALS != 0u ? work_group() * gl_NumSubgroups + gl_SubgroupID : lane;
+    uint first = min(sharers * share, params.photons);
     uint end = min(first + share, params.photons);
 
     PathState state;
@@ -211,18 +221,20 @@ void main() {
             running = false;
             traversal.node = NO_NODE;
         }
-        if (!running || found == TRACE_UNFINISHED) continue;
-        --steps;
-        first_ray = false;
-        fresh = true;
-        ++rays;
-        ++state.met;
-        // A photon that is no number would make one of every disc that it falls into.
-        bool valid = finite(state.power) && finite(state.direction);
-        if (!valid) atomicAdd(status.invalid, 1u);
-        bool alive = found == TRACE_HIT && valid;
-        if (alive) alive = meet(state, slot, traversal.hit);
-        if (!alive) end_light_path(state, slot);
+        // No `continue`: lanes are promised to be together again behind a branch, not where a loop goes on.
+        if (running && found != TRACE_UNFINISHED) {
+            --steps;
+            first_ray = false;
+            fresh = true;
+            ++rays;
+            ++state.met;
+            // A photon that is no number would make one of every disc that it falls into.
+            bool valid = finite(state.power) && finite(state.direction);
+            if (!valid) atomicAdd(status.invalid, 1u);
+            bool alive = found == TRACE_HIT && valid;
+            if (alive) alive = meet(state, slot, traversal.hit);
+            if (!alive) end_light_path(state, slot);
+        }
     }
     paths[lane] = state;
     if (lane == 0u) counters[PHOTON_TOTAL] = 0u;  // the scan of the counts leaves the total here

@@ -21,7 +21,7 @@ std::vector<Worker> make_workers(const Device::Options& options, const std::vect
     for (const unsigned count : threads) {
         setenv("LP_NUM_THREADS", std::to_string(count).c_str(), 1);
         workers.push_back({count, std::make_unique<Device>(options)});
-        if (workers.back().device->info().type != "cpu") {
+        if (workers.back().device->policy().way != Way::cpu) {
             workers.back().threads = std::max(1u, std::thread::hardware_concurrency());
             break;
         }

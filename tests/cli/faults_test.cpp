@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "cli/program.h"
 #include "io/exr.h"
 #include "support/files/files.h"
@@ -29,9 +31,14 @@ void PrintTo(const Fault& fault, std::ostream* stream) { *stream << fault.text; 
 
 class FaultLayer : public ProgramTest {
 protected:
-    ProcessResult run_on(const char* fault, Words more) const {
-        Words words{"/usr/bin/env", "VK_LAYER_PATH=" + test::fault_layer_folder(),
-                    "VK_INSTANCE_LAYERS=VK_LAYER_VKCPPM_fault", std::string("VKCPPM_FAULT=") + fault, test::program()};
+    /// policy: VKCPPM_POLICY.
+    ProcessResult run_on(const char* fault, Words more, const char* policy = "") const {
+        Words words{"/usr/bin/env",
+                    "VK_LAYER_PATH=" + test::fault_layer_folder(),
+                    "VK_INSTANCE_LAYERS=VK_LAYER_VKCPPM_fault",
+                    std::string("VKCPPM_FAULT=") + fault,
+                    std::string("VKCPPM_POLICY=") + policy,
+                    test::program()};
         words.insert(words.end(), more.begin(), more.end());
         return run_process(words, folder_.path());
     }
@@ -61,6 +68,7 @@ const std::vector<Fault> faults = {
     {"MemoryForAKernel", "vkCreateComputePipelines 3 -2", 71, {"out of device memory while creating kernel '"}},
     {"AnErrorWithoutAName", "vkCreateComputePipelines 1 -13", 70, {"Vulkan failed while creating kernel '"}},
     {"ASmallDevice", "heap 0 200000", 71, {"the render needs ", "; it has 1 MB: "}},
+    {"FewTexels", "texels 0 65536", 69, {"no usable Vulkan device", "65536 texels in a buffer, 2097152 are needed"}},
 };
 
 INSTANTIATE_TEST_SUITE_P(, Faults, testing::ValuesIn(faults),
@@ -73,14 +81,14 @@ TEST_F(FaultLayer, TheLayerItselfIsNoFault) {
     EXPECT_EQ(names_in(folder_.path()), std::set<std::string>{"a.exr"});
 }
 
-// All that the host reads and writes then goes through staging buffers: scene, parameters, passes, picture, checkpoint.
-TEST_F(FaultLayer, MemoryThatTheHostDoesNotSeeGivesTheSameBits) {
-    const auto hashes_on = [&](const char* device) {
+// All that the host reads and writes then goes through staging copies: scene, parameters, passes, picture, checkpoint.
+TEST_F(FaultLayer, ACardGivesTheSameBits) {
+    const auto hashes_on = [&](const char* device, const char* policy = "") {
         const auto render = [&](const Words& more) {
             Words words{scene("slab"), "--size", "16x12", "--photons", "500",          "--quiet",
                         "--aovs",      "--hash", "-o",    "a.exr",     "--checkpoint", "a.checkpoint"};
             words.insert(words.end(), more.begin(), more.end());
-            const ProcessResult result = run_on(device, words);
+            const ProcessResult result = run_on(device, words, policy);
             expect_done(result);
             return result.out;
         };
@@ -89,8 +97,32 @@ TEST_F(FaultLayer, MemoryThatTheHostDoesNotSeeGivesTheSameBits) {
     };
     const std::string seen = hashes_on("");
     EXPECT_EQ(lines_of(seen).size(), 2 * (3 * 6 + 1));
-    EXPECT_EQ(hashes_on("window 0 0"), seen);
-    EXPECT_EQ(hashes_on("window 0 100000"), seen) << "some buffers lie in the window, others do not";
+    EXPECT_EQ(hashes_on("card 8000000 4000000;texels 0 2097152"), seen)
+        << "some buffers lie in the window, others do not, with as few texels as are asked for";
+    EXPECT_EQ(hashes_on("card 0 268435456;stamps 0 36", "gpu"), seen) << "all of a card's way";
+}
+
+// A card whose window is full long before its memory.
+TEST_F(FaultLayer, ALargeRenderFitsACardWithASmallWindow) {
+    expect_done(run_on("card 0 1000000", {scene("slab"), "--size", "256x192", "--iterations", "1", "--photons", "2000",
+                                          "--quiet", "-o", "a.exr"}));
+}
+
+// Clocks that begin again in the render, and those that are not there: what passes take stays near what all took.
+TEST_F(FaultLayer, TimeStampsMayBeginAgainOrBeMissing) {
+    for (const char* device : {"stamps 0 36", "stamps 0 0"}) {
+        SCOPED_TRACE(device);
+        const ProcessResult result =
+            run_on(device, {scene("slab"), "--size", "16x12", "--photons", "2000", "--iterations", "64", "--quiet",
+                            "-o", "a.exr", "--stats", "a.json"});
+        expect_done(result);
+        const auto stats = nlohmann::json::parse(read_bytes(folder_ / "a.json"));
+        double seconds = 0.0;
+        for (const auto& pass : stats.at("passes")) seconds += pass.at("device_seconds").get<double>();
+        EXPECT_GT(seconds, 0.0);
+        // The wall's clock stands still while pipelines are compiled, which takes seconds.
+        EXPECT_LT(seconds, stats.at("totals").at("wall_seconds").get<double>() + 30.0);
+    }
 }
 
 // What a render may have made in hours is not lost with the memory for longer paths.

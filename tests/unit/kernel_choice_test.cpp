@@ -44,11 +44,10 @@ TEST(KernelChoice, WaitsForEveryFormHoweverOftenOneIsDisturbed) {
 }
 
 TEST(KernelChoice, SoftwareVulkanHasOneFormAndLightKernelsToo) {
-    DeviceInfo device;
-    device.type = "cpu";
-    EXPECT_EQ(forms_for(device), std::vector<KernelForm>{{}});
-    device.type = "discrete";
-    const std::vector<KernelForm> forms = forms_for(device);
+    DevicePolicy policy;
+    EXPECT_EQ(forms_for(policy), std::vector<KernelForm>{{}});
+    policy.tries_forms = true;
+    const std::vector<KernelForm> forms = forms_for(policy);
     EXPECT_EQ(forms.front(), KernelForm{}) << "what is not measured runs in the form of software Vulkan";
     EXPECT_EQ(forms_of(row_of(KernelId::photon), forms), forms);
     for (const KernelId kernel : {KernelId::update, KernelId::scan_blocks, KernelId::knn}) {

@@ -1,17 +1,23 @@
-// A Vulkan layer that makes the device another one, as the environment says:
+// A Vulkan layer that makes the device another one, as the environment says, one thing after another with ; between:
 //   VKCPPM_FAULT="vkQueueSubmit 3 -4"   the third call of the function and all after it return that VkResult
 //   VKCPPM_FAULT="heap 0 67108864"      every heap of memory has that many bytes
 //   VKCPPM_FAULT="full 3 65536"         from the third submission on there is room for so many bytes at once, no more
-//   VKCPPM_FAULT="window 0 65536"       a card of its own: its memory is not seen by the host, but for a window that is
-//                                       full once so many bytes were allocated in it; 0: there is no window
+//   VKCPPM_FAULT="card 0 268435456"     a card of its own: the host sees of its memory a window of so many bytes, or
+//                                       with 0 none, and has memory of its own. The first number: bytes of the card's
+//                                       memory beside the window; 0: as many as there are
+//   VKCPPM_FAULT="stamps 0 36"          time stamps have so many bits and soon begin again at 0; 0: there are none
+//   VKCPPM_FAULT="texels 0 65536"       texel buffers hold so many
 // The program under test is the one that users have: it knows nothing of this.
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <map>
 #include <sstream>
 #include <string>
+#include <type_traits>
+#include <vector>
 
 #include <vulkan/vk_layer.h>
 #include <vulkan/vulkan.h>
@@ -19,27 +25,58 @@
 namespace {
 
 struct Fault {
-    std::string function;
-    int first = 1;        // call that fails, or the last submission before memory is full
-    long long value = 0;  // VkResult, or bytes
+    std::string what;
+    long long first = 1;  // call that fails, or the last submission before memory is full, or bytes
+    long long value = 0;  // VkResult, bytes, bits or texels
     int calls = 0;
-
-    Fault() {
-        const char* text = std::getenv("VKCPPM_FAULT");
-        std::istringstream(text ? text : "") >> function >> first >> value;
-    }
-    bool strikes(const char* name) { return function == name && ++calls >= first; }
 };
 
-Fault fault;
+struct Faults {
+    std::vector<Fault> all;
+
+    Faults() {
+        const char* text = std::getenv("VKCPPM_FAULT");
+        std::istringstream parts(text ? text : "");
+        for (std::string part; std::getline(parts, part, ';');) {
+            Fault fault;
+            std::istringstream(part) >> fault.what >> fault.first >> fault.value;
+            all.push_back(fault);
+        }
+    }
+    /// The fault of that name, or null.
+    Fault* find(const char* what) {
+        const auto found = std::find_if(all.begin(), all.end(), [&](const Fault& f) { return f.what == what; });
+        return found == all.end() ? nullptr : &*found;
+    }
+    /// The fault that strikes this call of a function, or null.
+    Fault* strikes(const char* function) {
+        Fault* fault = find(function);
+        return fault && ++fault->calls >= fault->first ? fault : nullptr;
+    }
+};
+
+Faults faults;
 PFN_vkGetInstanceProcAddr next_instance_function = nullptr;  // of the one instance and the one device
 PFN_vkGetDeviceProcAddr next_device_function = nullptr;
 PFN_vkGetPhysicalDeviceMemoryProperties next_memory_properties = nullptr;
+PFN_vkGetPhysicalDeviceProperties next_properties = nullptr;
+PFN_vkGetPhysicalDeviceQueueFamilyProperties next_queue_families = nullptr;
 VkDevice the_device = VK_NULL_HANDLE;
-std::map<std::uint32_t, std::uint32_t> real_types;  // memory types of a card of its own to the driver's
-std::uint32_t window_types = 0;                     // a bit each
-VkDeviceSize in_window = 0;                         // bytes
 int submissions = 0;
+
+/// A type of memory of a card: which of the driver's it is, where all are one heap, and how much there is of it.
+struct CardType {
+    std::uint32_t real = 0;
+    VkDeviceSize bytes = 0;
+    bool mappable = false;
+};
+std::map<std::uint32_t, CardType> card_types;
+struct CardMemory {
+    std::uint32_t type = 0;
+    VkDeviceSize bytes = 0;
+};
+std::map<VkDeviceMemory, CardMemory> card_memory;
+std::uint64_t first_stamp = 0;
 
 /// The loader's link to the next layer in the chain of a create info; takes it out of the chain.
 template <typename Link, typename Info> auto* take_link(const Info* info, VkStructureType type) {
@@ -60,8 +97,13 @@ VkResult create_instance(const VkInstanceCreateInfo* info, const VkAllocationCal
         reinterpret_cast<PFN_vkCreateInstance>(next_instance_function(VK_NULL_HANDLE, "vkCreateInstance"));
     const VkResult result = create(info, allocator, instance);
     // Now: once the loader knows this layer's functions it answers with them.
-    next_memory_properties = reinterpret_cast<PFN_vkGetPhysicalDeviceMemoryProperties>(
-        next_instance_function(*instance, "vkGetPhysicalDeviceMemoryProperties"));
+    const auto find = [&](auto& function, const char* name) {
+        function =
+            reinterpret_cast<std::remove_reference_t<decltype(function)>>(next_instance_function(*instance, name));
+    };
+    find(next_memory_properties, "vkGetPhysicalDeviceMemoryProperties");
+    find(next_properties, "vkGetPhysicalDeviceProperties");
+    find(next_queue_families, "vkGetPhysicalDeviceQueueFamilyProperties");
     return result;
 }
 
@@ -82,88 +124,152 @@ template <typename Function> Function next(const char* name) {
 
 VkResult queue_submit(VkQueue queue, std::uint32_t count, const VkSubmitInfo* submits, VkFence fence) {
     ++submissions;
-    if (fault.strikes("vkQueueSubmit")) return VkResult(fault.value);
+    if (const Fault* fault = faults.strikes("vkQueueSubmit")) return VkResult(fault->value);
     return next<PFN_vkQueueSubmit>("vkQueueSubmit")(queue, count, submits, fence);
 }
 
 VkResult wait_for_fences(VkDevice device, std::uint32_t count, const VkFence* fences, VkBool32 all,
                          std::uint64_t time) {
     const VkResult result = next<PFN_vkWaitForFences>("vkWaitForFences")(device, count, fences, all, time);
-    return fault.strikes("vkWaitForFences") ? VkResult(fault.value) : result;
+    const Fault* fault = faults.strikes("vkWaitForFences");
+    return fault ? VkResult(fault->value) : result;
 }
 
 VkResult allocate_memory(VkDevice device, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks* allocator,
                          VkDeviceMemory* memory) {
-    if (fault.strikes("vkAllocateMemory")) return VkResult(fault.value);
-    if (fault.function == "full" && submissions >= fault.first && info->allocationSize > VkDeviceSize(fault.value)) {
+    if (const Fault* fault = faults.strikes("vkAllocateMemory")) return VkResult(fault->value);
+    const Fault* full = faults.find("full");
+    if (full && submissions >= full->first && info->allocationSize > VkDeviceSize(full->value)) {
         return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     }
-    if (window_types >> info->memoryTypeIndex & 1) {
-        in_window += info->allocationSize;
-        if (in_window > VkDeviceSize(fault.value)) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    }
+    const auto type = card_types.find(info->memoryTypeIndex);
     VkMemoryAllocateInfo real = *info;
-    if (const auto type = real_types.find(info->memoryTypeIndex); type != real_types.end()) {
-        real.memoryTypeIndex = type->second;
+    if (type != card_types.end()) {
+        VkDeviceSize in_use = 0;
+        for (const auto& [other, card] : card_memory) in_use += card.type == type->first ? card.bytes : 0;
+        if (in_use + info->allocationSize > type->second.bytes) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+        real.memoryTypeIndex = type->second.real;
     }
-    return next<PFN_vkAllocateMemory>("vkAllocateMemory")(device, &real, allocator, memory);
+    const VkResult result = next<PFN_vkAllocateMemory>("vkAllocateMemory")(device, &real, allocator, memory);
+    if (result == VK_SUCCESS && type != card_types.end()) card_memory[*memory] = {type->first, info->allocationSize};
+    return result;
+}
+
+void free_memory(VkDevice device, VkDeviceMemory memory, const VkAllocationCallbacks* allocator) {
+    card_memory.erase(memory);
+    next<PFN_vkFreeMemory>("vkFreeMemory")(device, memory, allocator);
+}
+
+VkResult map_memory(VkDevice device, VkDeviceMemory memory, VkDeviceSize offset, VkDeviceSize size,
+                    VkMemoryMapFlags flags, void** data) {
+    const auto card = card_memory.find(memory);
+    if (card != card_memory.end() && !card_types[card->second.type].mappable) return VK_ERROR_MEMORY_MAP_FAILED;
+    return next<PFN_vkMapMemory>("vkMapMemory")(device, memory, offset, size, flags, data);
 }
 
 void get_buffer_memory_requirements(VkDevice device, VkBuffer buffer, VkMemoryRequirements* needed) {
     next<PFN_vkGetBufferMemoryRequirements>("vkGetBufferMemoryRequirements")(device, buffer, needed);
-    for (const auto& [type, real] : real_types) needed->memoryTypeBits |= (needed->memoryTypeBits >> real & 1) << type;
+    const std::uint32_t real = needed->memoryTypeBits;
+    for (const auto& [type, card] : card_types) needed->memoryTypeBits |= (real >> card.real & 1) << type;
 }
 
 VkResult create_compute_pipelines(VkDevice device, VkPipelineCache cache, std::uint32_t count,
                                   const VkComputePipelineCreateInfo* infos, const VkAllocationCallbacks* allocator,
                                   VkPipeline* pipelines) {
-    if (fault.strikes("vkCreateComputePipelines")) return VkResult(fault.value);
+    if (const Fault* fault = faults.strikes("vkCreateComputePipelines")) return VkResult(fault->value);
     return next<PFN_vkCreateComputePipelines>("vkCreateComputePipelines")(device, cache, count, infos, allocator,
                                                                           pipelines);
 }
 
-/// Hides from the host what is both the device's and the host's, and adds a type for the window and one of the host.
-void make_card(VkPhysicalDeviceMemoryProperties& memory) {
+/// Hides from the host the memory that is both the device's and the host's, and adds memory of the host and a window.
+void make_card(VkPhysicalDeviceMemoryProperties& memory, const Fault& fault) {
     constexpr VkMemoryPropertyFlags mapped = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     constexpr VkMemoryPropertyFlags local = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
-    const std::uint32_t count = memory.memoryTypeCount;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        VkMemoryType& own = memory.memoryTypes[i];
-        if ((own.propertyFlags & (local | mapped)) != (local | mapped)) continue;
-        own.propertyFlags = local;
-        const auto add = [&](VkMemoryPropertyFlags properties) {
-            real_types[memory.memoryTypeCount] = i;
-            memory.memoryTypes[memory.memoryTypeCount++] = {properties, own.heapIndex};
-        };
-        if (fault.value > 0) {
-            window_types |= 1u << memory.memoryTypeCount;
-            add(local | mapped);
-        }
-        add(mapped | VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
-    }
+    const VkMemoryType* both = std::find_if(
+        memory.memoryTypes, memory.memoryTypes + memory.memoryTypeCount,
+        [](const VkMemoryType& type) { return (type.propertyFlags & (local | mapped)) == (local | mapped); });
+    const auto real = std::uint32_t(both - memory.memoryTypes);
+    if (real == memory.memoryTypeCount) return;
+    const VkDeviceSize bytes = memory.memoryHeaps[both->heapIndex].size;
+    card_types.clear();
+    memory.memoryHeapCount = memory.memoryTypeCount = 0;
+    const auto add = [&](VkMemoryPropertyFlags properties, VkDeviceSize size) {
+        const VkMemoryHeapFlags flags = properties & local ? VK_MEMORY_HEAP_DEVICE_LOCAL_BIT : 0;
+        memory.memoryHeaps[memory.memoryHeapCount] = {size, flags};
+        card_types[memory.memoryTypeCount] = {real, size, (properties & mapped) != 0};
+        memory.memoryTypes[memory.memoryTypeCount++] = {properties, memory.memoryHeapCount++};
+    };
+    add(local, fault.first > 0 ? VkDeviceSize(fault.first) : bytes);
+    add(mapped, bytes);
+    add(mapped | VK_MEMORY_PROPERTY_HOST_CACHED_BIT, bytes);
+    if (fault.value > 0) add(local | mapped, VkDeviceSize(fault.value));
 }
 
 void get_memory_properties(VkPhysicalDevice physical, VkPhysicalDeviceMemoryProperties* memory) {
     next_memory_properties(physical, memory);
-    for (std::uint32_t i = 0; fault.function == "heap" && i < memory->memoryHeapCount; ++i) {
-        memory->memoryHeaps[i].size = VkDeviceSize(fault.value);
+    const Fault* heap = faults.find("heap");
+    for (std::uint32_t i = 0; heap && i < memory->memoryHeapCount; ++i) {
+        memory->memoryHeaps[i].size = VkDeviceSize(heap->value);
     }
-    if (fault.function == "window") make_card(*memory);
+    if (const Fault* card = faults.find("card")) make_card(*memory, *card);
+}
+
+void get_properties(VkPhysicalDevice physical, VkPhysicalDeviceProperties* properties) {
+    next_properties(physical, properties);
+    if (const Fault* texels = faults.find("texels")) {
+        properties->limits.maxTexelBufferElements = std::uint32_t(texels->value);
+    }
+}
+
+void get_queue_families(VkPhysicalDevice physical, std::uint32_t* count, VkQueueFamilyProperties* families) {
+    next_queue_families(physical, count, families);
+    const Fault* stamps = faults.find("stamps");
+    for (std::uint32_t i = 0; stamps && families && i < *count; ++i) {
+        families[i].timestampValidBits = std::uint32_t(stamps->value);
+    }
+}
+
+VkResult create_query_pool(VkDevice device, const VkQueryPoolCreateInfo* info, const VkAllocationCallbacks* allocator,
+                           VkQueryPool* pool) {
+    const Fault* stamps = faults.find("stamps");
+    if (stamps && stamps->value == 0) return VK_ERROR_INITIALIZATION_FAILED;
+    return next<PFN_vkCreateQueryPool>("vkCreateQueryPool")(device, info, allocator, pool);
+}
+
+/// The clock begins again 20 ms after the first stamp.
+VkResult get_query_pool_results(VkDevice device, VkQueryPool pool, std::uint32_t first, std::uint32_t count,
+                                std::size_t size, void* data, VkDeviceSize stride, VkQueryResultFlags flags) {
+    const VkResult result =
+        next<PFN_vkGetQueryPoolResults>("vkGetQueryPoolResults")(device, pool, first, count, size, data, stride, flags);
+    const Fault* stamps = faults.find("stamps");
+    auto* values = static_cast<std::uint64_t*>(data);
+    if (!stamps || !(flags & VK_QUERY_RESULT_64_BIT) || stride != sizeof(*values)) return result;
+    if (first_stamp == 0) first_stamp = values[0];
+    const std::uint64_t valid = ~std::uint64_t(0) >> (64 - stamps->value);
+    for (std::uint32_t i = 0; i < count; ++i) values[i] = (values[i] - first_stamp - 20'000'000) & valid;
+    return result;
 }
 
 /// The layer's own function of that name, or null.
 PFN_vkVoidFunction own_function(const char* name) {
     const auto is = [&](const char* other) { return std::strcmp(name, other) == 0; };
-    if (is("vkCreateInstance")) return reinterpret_cast<PFN_vkVoidFunction>(create_instance);
-    if (is("vkCreateDevice")) return reinterpret_cast<PFN_vkVoidFunction>(create_device);
-    if (is("vkGetPhysicalDeviceMemoryProperties")) return reinterpret_cast<PFN_vkVoidFunction>(get_memory_properties);
-    if (is("vkQueueSubmit")) return reinterpret_cast<PFN_vkVoidFunction>(queue_submit);
-    if (is("vkWaitForFences")) return reinterpret_cast<PFN_vkVoidFunction>(wait_for_fences);
-    if (is("vkAllocateMemory")) return reinterpret_cast<PFN_vkVoidFunction>(allocate_memory);
-    if (is("vkGetBufferMemoryRequirements")) {
-        return reinterpret_cast<PFN_vkVoidFunction>(get_buffer_memory_requirements);
-    }
-    if (is("vkCreateComputePipelines")) return reinterpret_cast<PFN_vkVoidFunction>(create_compute_pipelines);
+#define OWN(name, function) \
+    if (is(name)) return reinterpret_cast<PFN_vkVoidFunction>(function);
+    OWN("vkCreateInstance", create_instance)
+    OWN("vkCreateDevice", create_device)
+    OWN("vkGetPhysicalDeviceMemoryProperties", get_memory_properties)
+    OWN("vkGetPhysicalDeviceProperties", get_properties)
+    OWN("vkGetPhysicalDeviceQueueFamilyProperties", get_queue_families)
+    OWN("vkQueueSubmit", queue_submit)
+    OWN("vkWaitForFences", wait_for_fences)
+    OWN("vkAllocateMemory", allocate_memory)
+    OWN("vkFreeMemory", free_memory)
+    OWN("vkMapMemory", map_memory)
+    OWN("vkGetBufferMemoryRequirements", get_buffer_memory_requirements)
+    OWN("vkCreateComputePipelines", create_compute_pipelines)
+    OWN("vkCreateQueryPool", create_query_pool)
+    OWN("vkGetQueryPoolResults", get_query_pool_results)
+#undef OWN
     return nullptr;
 }
 
