@@ -101,6 +101,19 @@ std::size_t floats_of(const Job& job, const Cut& cut) {
     return each * job.plan.settings.size->pixels();
 }
 
+/// Sums of no iterations.
+IterationSums no_sums(const Job& job) {
+    const Settings& settings = job.plan.settings;
+    const std::size_t pixels = settings.size->pixels();
+    IterationSums sums{*settings.size, 0, std::vector<glm::dvec3>(pixels, glm::dvec3(0.0)), {}, {}};
+    if (settings.aovs) sums.surfaces.resize(pixels);
+    if (settings.error) {
+        sums.errors.extent = *settings.size;
+        for (auto& group : sums.errors.of_group) group.assign(pixels, glm::vec4(0.0f));
+    }
+    return sums;
+}
+
 // ---- job.json ----
 
 Json json_of(const Job& job) {
@@ -222,26 +235,17 @@ Job read_job(const fs::path& folder) {
 }
 
 void write_pilot(const Job& job, const Pilot& pilot, const Report& report) {
-    Checkpoint checkpoint{report, {}, pilot.state};
-    const auto exponents = std::as_bytes(std::span(pilot.exponents));
-    checkpoint.state.insert(checkpoint.state.end(), exponents.begin(), exponents.end());
-    write_checkpoint(pilot_file(job), job.identity, checkpoint);
+    write_checkpoint(pilot_file(job), job.identity, {report, {}, pilot.state});
 }
 
 PilotOnDisk read_pilot(const Job& job) {
-    const std::size_t pixels = job.plan.settings.size->pixels();
-    Checkpoint checkpoint = read_checkpoint(pilot_file(job), job.identity, pixels);
-    PilotOnDisk on_disk{{job.pilot, std::move(checkpoint.state), std::vector<float>(pixels)},
-                        std::move(checkpoint.report)};
-    std::vector<std::byte>& state = on_disk.pilot.state;
-    const std::size_t bytes = pixels * sizeof(float);
-    if (state.size() < bytes || on_disk.report.iterations != job.pilot) {
-        throw Error(ExitCode::bad_scene, fmt::format("{} is no pilot of {} iterations and {} pixels",
-                                                     pilot_file(job).string(), job.pilot, pixels));
+    Checkpoint checkpoint = read_checkpoint(pilot_file(job), job.identity, job.plan.settings.size->pixels());
+    if (checkpoint.report.iterations != job.pilot) {
+        throw Error(ExitCode::bad_scene,
+                    fmt::format("{} has {} iterations, the job tells of {}", pilot_file(job).string(),
+                                checkpoint.report.iterations, job.pilot));
     }
-    std::memcpy(on_disk.pilot.exponents.data(), state.data() + state.size() - bytes, bytes);
-    state.resize(state.size() - bytes);
-    return on_disk;
+    return {{job.pilot, std::move(checkpoint.state)}, std::move(checkpoint.report)};
 }
 
 fs::path slice_file(const Job& job, const Cut& cut) { return job.folder / fmt::format("slice_{:04}.sums", cut.number); }
@@ -252,13 +256,14 @@ void write_slice(const Job& job, const Cut& cut, const Slice& slice) {
 
 Report add_slice(const Job& job, const Cut& cut, IterationSums& sums) {
     const fs::path file = slice_file(job, cut);
-    const Checkpoint checkpoint = read_checkpoint(file, identity_of(job, cut), sums.extent.pixels());
+    const Checkpoint checkpoint = read_checkpoint(file, identity_of(job, cut), job.plan.settings.size->pixels());
     const std::size_t bytes = floats_of(job, cut) * sizeof(float);
     if (checkpoint.state.size() != bytes || checkpoint.report.iterations != cut.count) {
         throw Error(ExitCode::bad_scene,
                     fmt::format("{} has {} bytes of sums over {} iterations, {} over {} are wanted", file.string(),
                                 checkpoint.state.size(), checkpoint.report.iterations, bytes, cut.count));
     }
+    if (sums.iterations == 0) sums = no_sums(job);
     Floats floats(checkpoint.state);
     const auto add = [&](auto& sum) { sum += floats.take(); };
     const auto take = [&](auto& value) { value = floats.take(); };
@@ -278,18 +283,6 @@ Report add_slice(const Job& job, const Cut& cut, IterationSums& sums) {
     }
     sums.iterations += cut.count;
     return checkpoint.report;
-}
-
-IterationSums no_sums(const Job& job) {
-    const Settings& settings = job.plan.settings;
-    const std::size_t pixels = settings.size->pixels();
-    IterationSums sums{*settings.size, 0, std::vector<glm::dvec3>(pixels, glm::dvec3(0.0)), {}, {}};
-    if (settings.aovs) sums.surfaces.resize(pixels);
-    if (settings.error) {
-        sums.errors.extent = *settings.size;
-        for (auto& group : sums.errors.of_group) group.assign(pixels, glm::vec4(0.0f));
-    }
-    return sums;
 }
 
 std::optional<Error> fault_of(const Job& job, const Cut& cut) {

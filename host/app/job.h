@@ -1,7 +1,7 @@
 #pragma once
 // A job on disk: a render that many machines share. A folder with
 //   job.json          the command line that planned it, what was made of that, and how it is cut; written last
-//   pilot.ckpt        what slices hang on: a checkpoint after the pilot's iterations, and the exponents of its pixels
+//   pilot.ckpt        what slices hang on: a checkpoint after the pilot's iterations
 //   slice_0000.sums   what the pilot's iterations have added up to
 //   slice_0001.sums   what those of the first slice have, and so on
 // Each is written whole or not at all, and none is written to again. Slices are checkpoints in form
@@ -75,12 +75,9 @@ PilotOnDisk read_pilot(const Job& job);
 std::filesystem::path slice_file(const Job& job, const Cut& cut);
 void write_slice(const Job& job, const Cut& cut, const Slice& slice);
 
-/// Adds what is on disk to the sums. Throws like read_checkpoint(): Error(no_input) where it is not there,
+/// Adds what is on disk to the sums, empty at first: no memory is taken before a file is found whole. Throws like read_checkpoint(): Error(no_input) where it is not there,
 /// Error(bad_scene) where it is damaged, Error(usage) with what differs where it is of another job.
 Report add_slice(const Job& job, const Cut& cut, IterationSums& sums);
-
-/// Sums of no iterations.
-IterationSums no_sums(const Job& job);
 
 /// What add_slice() throws where a slice is not there or is damaged; throws where it is of another job.
 std::optional<Error> fault_of(const Job& job, const Cut& cut);

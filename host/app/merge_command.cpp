@@ -52,7 +52,7 @@ void execute(const MergeOptions& options) {
     for (const Cut& cut : cuts) inputs.push_back(slice_file(job, cut));
     check_outputs(inputs, {{"-o", options.output, ".exr"}, {"--png", options.png, ".png"}}, false);
 
-    IterationSums sums = no_sums(job);
+    IterationSums sums;
     Report all;
     std::vector<std::string> devices;
     std::size_t missing = 0;

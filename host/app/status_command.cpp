@@ -34,7 +34,7 @@ struct JobStatus {
 
 JobStatus status_of(const Job& job) {
     JobStatus status;
-    IterationSums sums = no_sums(job);
+    IterationSums sums;
     std::optional<fs::file_time_type> first, last;
     std::uint64_t since_first = 0;  // iterations
     double slowest = 0.0;           // seconds an iteration of one machine

@@ -1,8 +1,6 @@
 #include "render/slices.h"
 
-#include <algorithm>
 #include <cassert>
-#include <span>
 
 #include "core/process.h"
 #include "flat/flatten.h"
@@ -13,8 +11,7 @@
 
 namespace vkcppm {
 
-SliceRenderer::SliceRenderer(const Scene& scene, const Settings& settings, Device& device)
-    : settings_(settings), device_(device) {
+SliceRenderer::SliceRenderer(const Scene& scene, const Settings& settings, Device& device) : settings_(settings) {
     check_memory(scene, settings_, device);
     on_device_.emplace(device, flatten(scene));
     const Camera& camera = camera_of(settings_, scene);
@@ -22,38 +19,30 @@ SliceRenderer::SliceRenderer(const Scene& scene, const Settings& settings, Devic
     integrator_.emplace(*on_device_, camera, settings_);
 }
 
-/// Runs so many iterations, and tells what they took. False where keep_going ended it.
-bool SliceRenderer::run(std::uint32_t count, Report& report, const KeepGoing& keep_going) {
-    const std::uint32_t first = integrator_->completed();
+/// So many iterations from the one on that is due.
+std::optional<Slice> SliceRenderer::run(std::uint32_t count, const KeepGoing& keep_going) {
     const double wall = wall_now(), cpu = cpu_now();
+    const std::uint32_t first = integrator_->completed();
     Settings bound = settings_;
     bound.iterations = count;
     bound.seconds.reset();
     for (std::uint32_t done = 0; done < count; done = integrator_->completed() - first) {
         integrator_->run(submission_size(done, wall_now() - wall, bound, [](std::uint32_t) { return false; }));
-        if (!keep_going({integrator_->completed() - first, count, wall_now() - wall})) return false;
+        if (!keep_going({integrator_->completed() - first, count, wall_now() - wall})) return std::nullopt;
     }
-    integrator_->fill(report);
-    report.wall_seconds = wall_now() - wall;
-    report.cpu_seconds = cpu_now() - cpu;
-    report.peak_memory_bytes = peak_memory();
-    return true;
+    Slice slice;
+    integrator_->fill(slice.report);
+    slice.report.wall_seconds = wall_now() - wall;
+    slice.report.cpu_seconds = cpu_now() - cpu;
+    slice.sums = integrator_->sums();
+    return slice;
 }
 
-std::optional<SliceRenderer::PilotSlice> SliceRenderer::render_pilot(std::uint32_t iterations,
-                                                                     const KeepGoing& keep_going) {
+std::optional<PilotOfSlices> SliceRenderer::render_pilot(std::uint32_t iterations, const KeepGoing& keep_going) {
     assert(integrator_->completed() == 0 && iterations >= least_pilot);
-    Report first_half;
-    if (!run(iterations / 2, first_half, keep_going)) return std::nullopt;
-    const std::vector<gpu::PixelState> before = integrator_->pixel_states();
-    PilotSlice result;
-    if (!run(iterations - iterations / 2, result.slice.report, keep_going)) return std::nullopt;
-    result.slice.report.wall_seconds += first_half.wall_seconds;
-    result.slice.report.cpu_seconds += first_half.cpu_seconds;
-    result.slice.sums = integrator_->sums();
-    result.pilot = {iterations, integrator_->save(),
-                    exponents_of(settings_, *settings_.size, before, integrator_->pixel_states())};
-    return result;
+    std::optional<Slice> slice = run(iterations, keep_going);
+    if (!slice) return std::nullopt;
+    return PilotOfSlices{{iterations, integrator_->save()}, std::move(*slice)};
 }
 
 std::optional<Slice> SliceRenderer::render_slice(const Pilot& pilot, std::uint32_t first, std::uint32_t count,
@@ -62,19 +51,16 @@ std::optional<Slice> SliceRenderer::render_slice(const Pilot& pilot, std::uint32
     Report from;
     from.iterations = pilot.iterations;
     integrator_->restore(from, pilot.state);
+    const double shrink = mean_shrink(shrink_exponent(settings_), pilot.iterations, first, count);
     std::vector<gpu::PixelState> states = integrator_->pixel_states();
-    for (std::size_t i = 0; i < states.size(); ++i) {
-        gpu::PixelState& state = states[i];
+    for (gpu::PixelState& state : states) {
         state.seen = state.photons = 0;
-        if (state.seeded == 0) continue;  // it goes on looking for its first radius
-        state.radius2 *= float(mean_shrink(pilot.exponents[i], pilot.iterations, first, count));
+        if (state.seeded == 0) continue;
+        state.radius2 = float(state.radius2 * shrink);
         state.radius2_low = 0.0f;
     }
     integrator_->begin_slice(first, states);
-    Slice slice;
-    if (!run(count, slice.report, keep_going)) return std::nullopt;
-    slice.sums = integrator_->sums();
-    return slice;
+    return run(count, keep_going);
 }
 
 }  // namespace vkcppm

@@ -1,7 +1,8 @@
 #pragma once
-// A render cut into a pilot, its first iterations, and slices of those that follow, each of which needs the pilot alone:
-// whoever renders a slice, and when, its sums have the same bits on the same device. render/schedule.h says with what
-// radii.
+// A render cut into a pilot, its first iterations, and slices of those that follow, each of which hangs on the pilot
+// alone: whoever renders a slice, and when, its sums have the same bits on the same device. Its iterations have the
+// random numbers that they have in a render, and radii by render/schedule.h. A pixel that has no radius after the pilot
+// looks for one in every slice.
 
 #include <cstddef>
 #include <cstdint>
@@ -19,20 +20,25 @@
 
 namespace vkcppm {
 
-/// Iterations of a pilot, at least: before, radii say little of how they go on.
+/// Iterations of a pilot, at least.
 inline constexpr std::uint32_t least_pilot = 8;
 
 /// What slices hang on.
 struct Pilot {
     std::uint32_t iterations = 0;
     std::vector<std::byte> state;  // Integrator::save()
-    std::vector<float> exponents;  // [P] render/schedule.h
 };
 
-/// What iterations have added up to, and what they took. Of the pilot, or of a slice.
+/// What iterations have added up to, and what they took: of the pilot, or of a slice.
 struct Slice {
     Report report;
     IterationSums sums;
+};
+
+/// A pilot, and what its own iterations have added up to.
+struct PilotOfSlices {
+    Pilot pilot;
+    Slice slice;
 };
 
 class SliceRenderer {
@@ -45,23 +51,19 @@ public:
     /// Frame units a metre.
     double scale() const { return integrator_->scale(); }
 
-    struct PilotSlice {
-        Pilot pilot;
-        Slice slice;
-    };
-    /// The first iterations, `least_pilot` or more, by the estimator's own rule. None where keep_going ended it.
-    std::optional<PilotSlice> render_pilot(std::uint32_t iterations, const KeepGoing& keep_going);
+    /// The first iterations, `least_pilot` or more, by the estimator's own rule. None where keep_going ended it. Before
+    /// any slice.
+    std::optional<PilotOfSlices> render_pilot(std::uint32_t iterations, const KeepGoing& keep_going);
 
-    /// Iterations from `first` on, as many as `count`. None where keep_going ended it. Throws Error(bad_scene) where the
+    /// Iterations from `first` on, `count` of them. None where keep_going ended it. Throws Error(bad_scene) where the
     /// pilot cannot be of this scene and these settings.
     std::optional<Slice> render_slice(const Pilot& pilot, std::uint32_t first, std::uint32_t count,
                                       const KeepGoing& keep_going);
 
 private:
-    bool run(std::uint32_t count, Report& report, const KeepGoing& keep_going);
+    std::optional<Slice> run(std::uint32_t count, const KeepGoing& keep_going);
 
     Settings settings_;
-    Device& device_;
     std::optional<SceneOnDevice> on_device_;
     std::optional<Integrator> integrator_;
 };

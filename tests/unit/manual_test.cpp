@@ -20,7 +20,7 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 TEST(Manual, NamesEveryCommandAndOption) {
     const std::string page = manual_page(), bash = bash_completion(), zsh = zsh_completion(), fish = fish_completion();
     const std::vector<CommandText> commands = command_texts();
-    ASSERT_EQ(commands.size(), 8u);
+    ASSERT_EQ(commands.size(), 12u);
     for (const CommandText& command : commands) {
         for (const std::string* text : {&page, &bash, &zsh, &fish}) EXPECT_TRUE(contains(*text, command.name));
         for (const OptionText& option : command.options) {
