@@ -62,7 +62,7 @@ std::string completed(const std::vector<std::string>& words) {
 }
 
 TEST(Manual, BashCompletesCommandsOptionsAndValues) {
-    EXPECT_EQ(completed({"vkcppm", "re"}), "reference\n");
+    EXPECT_EQ(completed({"vkcppm", "re"}), "render-shard reference\n");
     EXPECT_EQ(completed({"vkcppm", "s.gltf", "--ph"}), "--photons\n");
     EXPECT_EQ(completed({"vkcppm", "s.gltf", "--estimator", "sppm-"}), "sppm-kz\n");
     EXPECT_EQ(completed({"vkcppm", "race", "s.gltf", "--thin-glass", ""}), "thin solid\n");
