@@ -25,7 +25,8 @@ std::uint64_t hash_of(const Image& image);
 /// `settings` must be resolved; reference: null where the render is not measured.
 Identity identity_of(const SceneOptions& options, const Scene& scene, const Settings& settings, const Image* reference);
 
-/// Throws Error(usage) with every name of which the two have other values. in: what `there` stands in, "the checkpoint".
+/// Throws Error(usage) with every name of which the two have other values. in: what `there` stands in, such as "the
+/// checkpoint".
 void require_same(const Identity& there, const Identity& asked, const std::filesystem::path& file,
                   const std::string& in);
 

@@ -127,7 +127,6 @@ Json json_of(const Job& job) {
     json["camera"] = settings.camera;
     json["photons"] = *settings.photons;
     json["scale"] = job.scale;
-    json["triangles"] = job.triangles;
     json["scene_hash"] = job.scene_hash;
     json["pilot"] = job.pilot;
     json["slice"] = job.slice;
@@ -156,7 +155,6 @@ Job job_of(const Json& json, const fs::path& folder) {
     settings.camera = json.at("camera").get<std::string>();
     settings.photons = json.at("photons").get<std::uint32_t>();
     job.scale = json.at("scale").get<double>();
-    job.triangles = json.at("triangles").get<std::uint64_t>();
     job.scene_hash = json.at("scene_hash").get<std::uint64_t>();
     job.pilot = json.at("pilot").get<std::uint32_t>();
     job.slice = json.at("slice").get<std::uint32_t>();

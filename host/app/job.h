@@ -37,7 +37,6 @@ struct Job {
     std::uint32_t pilot = 0, slice = 0;  // iterations of it, and of a slice
     std::vector<std::uint32_t> ends;     // iterations in all, as it was planned and after each extension; at least one
     std::uint64_t scene_hash = 0;
-    std::uint64_t triangles = 0;
 
     std::uint32_t iterations() const { return ends.back(); }
 };
@@ -60,8 +59,8 @@ bool is_job(const std::filesystem::path& folder);
 /// Replaces job.json. Throws Error(cannot_write).
 void write_job(const Job& job);
 
-/// Throws Error(no_input) where there is none, Error(bad_scene) where it is not one, Error(usage) where it is of another
-/// version.
+/// Throws Error(no_input) where there is none, Error(bad_scene) where it is not one, Error(usage) where it is of
+/// another version.
 Job read_job(const std::filesystem::path& folder);
 
 /// As write_checkpoint() and read_checkpoint() do.
@@ -75,8 +74,9 @@ PilotOnDisk read_pilot(const Job& job);
 std::filesystem::path slice_file(const Job& job, const Cut& cut);
 void write_slice(const Job& job, const Cut& cut, const Slice& slice);
 
-/// Adds what is on disk to the sums, empty at first: no memory is taken before a file is found whole. Throws like read_checkpoint(): Error(no_input) where it is not there,
-/// Error(bad_scene) where it is damaged, Error(usage) with what differs where it is of another job.
+/// Adds what is on disk to the sums, empty at first: no memory is taken before a file is found whole. Throws like
+/// read_checkpoint(): Error(no_input) where it is not there, Error(bad_scene) where it is damaged, Error(usage) with
+/// what differs where it is of another job.
 Report add_slice(const Job& job, const Cut& cut, IterationSums& sums);
 
 /// What add_slice() throws where a slice is not there or is damaged; throws where it is of another job.

@@ -87,6 +87,9 @@ void execute(const MergeOptions& options) {
     if (all.invalid > 0)
         print_message(fmt::format("warning: {} contributions were not finite and were dropped", all.invalid));
     const Rendering rendering = rendering_of(job, std::move(sums), std::move(all));
+    if (rendering.estimate) {
+        if (const auto warning = warning_of(*rendering.estimate)) print_message("warning: " + *warning);
+    }
     ExrAttributes attributes = exr_attributes(job.plan.scene, scene_of(job), rendering);
     attributes.emplace_back("vkcppm.pilot", std::to_string(job.pilot));
     attributes.emplace_back("vkcppm.slice", std::to_string(job.slice));

@@ -120,7 +120,6 @@ void execute(const PlanOptions& options) {
     job.slice = slice_of(options);
     job.ends = {settings.iterations};
     job.scene_hash = scene.hash;
-    job.triangles = scene.triangles.size();
 
     ProgressLine line(stderr, ::isatty(STDERR_FILENO) == 1, std::nullopt);
     const auto rendered = renderer.render_pilot(job.pilot, [&](const Progress& progress) {

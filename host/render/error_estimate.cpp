@@ -301,6 +301,15 @@ double upper_bound(const Expected& expected, double confidence) {
     return expected.value > 0.0 ? expected.value * std::exp(bar / expected.value) : bar;
 }
 
+std::optional<std::string> warning_of(const ErrorEstimate& estimate) {
+    constexpr double much = 0.01;  // what is found once is missed as often
+    if (estimate.rare <= much) return std::nullopt;
+    return fmt::format(
+        "{:.2g} % of the picture's light is in pixels that have found most of theirs in one of {} parts of the "
+        "iterations: other pixels may have missed such light, which no estimate of the error knows",
+        100.0 * estimate.rare, groups);
+}
+
 std::span<const EstimatedMeasure> estimated_measures() {
     static constexpr EstimatedMeasure table[] = {
         {"relmse", [](const ErrorEstimate& e) -> const Expected& { return e.relmse.error; }},

@@ -88,6 +88,9 @@ struct ErrorEstimate {
     double rare = 0.0;
 };
 
+/// A line where light is found so rarely that no estimate of the error is to be trusted.
+std::optional<std::string> warning_of(const ErrorEstimate& estimate);
+
 /// One that a render can end at.
 struct EstimatedMeasure {
     std::string_view name;
