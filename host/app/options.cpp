@@ -183,7 +183,7 @@ Entrant parse_entrant(const std::string& text, const Settings& common) {
     Entrant entrant{text, common};
     entrant.settings.estimator = find_estimator(parts.empty() ? "" : parts.front()).name;
     CLI::App app("", "--estimators");
-    add_settings(app, entrant.settings, {Kind::parameter});
+    add_settings(app, entrant.settings, {Kind::parameter, Kind::paths});
     app.set_help_flag();
     Words names, words;
     for (const CLI::Option* option : app.get_options()) names.push_back(option->get_name().substr(2));
@@ -270,7 +270,7 @@ void declare(CLI::App& app, RenderOptions& options) {
     frames->excludes("--reference")->excludes("--target")->excludes(snapshot);
     add(app, "--fps", "X", options.fps, parse_rate, fmt::format("Frames of a second (default: {:g})", options.fps))
         ->needs(frames);
-    add_settings(app, options.settings, {Kind::picture, Kind::view});
+    add_settings(app, options.settings, {Kind::picture, Kind::paths, Kind::view});
     add_settings(app, options.settings, {Kind::parameter});
     add_settings(app, options.settings, {Kind::channels});
     add_device(app, options.device);
@@ -386,7 +386,7 @@ void declare(CLI::App& app, RaceOptions& options) {
     app.add_option("--estimators")
         ->description(fmt::format("Who takes part, parameters behind a colon: cppm,cppm:beta=1.5:k=0.7,sppm\n"
                                   "(default: {}). The same seed means the same photon paths for all, and the same\n"
-                                  "starting radii unless they differ in knn",
+                                  "starting radii, unless they differ in photons, max-depth or knn",
                                   race_estimators))
         ->type_name("NAME[:PARAMETER=VALUE]...,...");
     // What all entrants have in common; finish() makes them of it.
@@ -406,7 +406,7 @@ void declare(CLI::App& app, RaceOptions& options) {
         "Make it first, in this time, as vkcppm reference does, with a seed that does not race: DIR/reference.exr")
         ->excludes("--reference");
     add_display(app, options.display, "pictures");
-    add_settings(app, settings, {Kind::picture, Kind::view});
+    add_settings(app, settings, {Kind::picture, Kind::paths, Kind::view});
     add_settings(app, settings, {Kind::parameter});
     add_device(app, options.device);
     app.add_flag("--quiet", options.quiet, "No progress, only warnings and errors");
@@ -444,7 +444,7 @@ void declare(CLI::App& app, ReferenceOptions& options) {
                             settings.render.iterations));
     add(app, "--trust", "X", settings.trust, parse_real,
         fmt::format("Largest relative standard error of a pixel that is trusted (default: {})", settings.trust));
-    add_settings(app, settings.render, {Kind::picture, Kind::view});
+    add_settings(app, settings.render, {Kind::picture, Kind::paths, Kind::view});
     add_device(app, options.device);
     app.add_option("--stats", options.stats, "Times and counts")->type_name("FILE.json");
     app.add_flag("--quiet", options.quiet, "No progress, only the summary");

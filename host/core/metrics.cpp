@@ -93,6 +93,8 @@ std::span<const Metric> metrics() {
     return table;
 }
 
+const Metric& default_metric() { return find_metric("", "relmse_trimmed"); }
+
 std::string metric_names() {
     std::string names;
     for (const Metric& metric : metrics()) names += (names.empty() ? "" : ", ") + std::string(metric.name);

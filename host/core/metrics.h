@@ -55,6 +55,10 @@ struct Metric {
 /// All of them, in the order in which they are told.
 std::span<const Metric> metrics();
 
+/// What is told where nobody asks for another: relMSE, which compares renderers whatever the exposure, without the few
+/// pixels that decide it alone.
+const Metric& default_metric();
+
 /// Their names, separated by commas.
 std::string metric_names();
 

@@ -56,8 +56,9 @@ template <> std::string reason_of<FEATURE_SMOOTH>(const Asked& asked) {
 }
 
 template <> std::string reason_of<FEATURE_TANGENTS>(const Asked& asked) {
-    const bool bent = (bits_of(asked.features) & FEATURE_NORMAL_MAPS) != 0;
-    return bent && !asked.scene.tangents.empty() ? "normal maps, and vertices that have some" : "";
+    if (asked.scene.tangents.empty()) return {};
+    const auto turns = [](const SurfaceTraits& t) { return t.normal_map || t.anisotropic; };
+    return reason_of(asked, turns).empty() ? "" : "normal maps or anisotropy, and vertices that have some";
 }
 
 template <> std::string reason_of<FEATURE_VERTEX_COLORS>(const Asked& asked) {

@@ -28,7 +28,7 @@ struct FlatScene {
     std::vector<std::uint8_t> first_corner;  // of the scene's triangle that kernels see first
     std::vector<gpu::Instance> instances;
     std::vector<gpu::TriangleShading> shading;
-    std::vector<glm::vec4> texcoords;       // [3 x triangles] both sets of a corner, where there are textures
+    std::vector<glm::vec4> texcoords;       // [3 x triangles] both sets of a corner, for textures and tangents
     std::vector<glm::uvec4> vertex_colors;  // [2 x triangles] 4 half floats a corner, then 2 unused words
     std::vector<glm::uvec4> tangents;       // [triangles] an octahedral tangent a corner, then TANGENTS_*
     std::vector<gpu::SurfaceMaterial> materials;

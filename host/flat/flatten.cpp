@@ -404,12 +404,13 @@ glm::vec4 texcoords_of(const Scene& scene, std::uint32_t vertex) {
 void add_attributes(const Scene& scene, FlatScene& flat) {
     const std::uint32_t features = bits_of(flat.features);
     const std::size_t count = flat.triangles.size();
-    if (features & FEATURE_TEXTURES) flat.texcoords.resize(3 * count);
+    const bool textured = (features & (FEATURE_TEXTURES | FEATURE_ANISOTROPY)) != 0;
+    if (textured) flat.texcoords.resize(3 * count);
     if (features & FEATURE_VERTEX_COLORS) flat.vertex_colors.resize(2 * count);
     if (features & FEATURE_TANGENTS) flat.tangents.resize(count);
     tbb::parallel_for(std::size_t(0), count, [&](std::size_t i) {
         const auto vertex = source_of(scene, flat, i).vertex;
-        if (features & FEATURE_TEXTURES) {
+        if (textured) {
             for (int c = 0; c < 3; ++c) flat.texcoords[3 * i + c] = texcoords_of(scene, vertex[c]);
         }
         if (features & FEATURE_VERTEX_COLORS) {

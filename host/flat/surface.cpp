@@ -25,7 +25,7 @@ std::string text(const glm::vec3& v) {
 /// A metal that is black all over: what exporters leave under a lamp. Schlick's white edge would have rays trace it,
 /// and every photon weighed, for nothing that anybody means: it takes all light in.
 bool is_black_metal(const Material& m) {
-    return m.metallic == 1.0f && m.base_color == black && !m.metallic_roughness_texture;
+    return m.metallic == 1.0f && m.base_color == black && !m.metallic_roughness_texture && m.iridescence == 0.0f;
 }
 
 /// Light gets below its surface, somewhere, and is not let through.
@@ -42,6 +42,13 @@ LobeTraits of_facets(float roughness, const std::optional<Texture>& texture) {
     return {.smooth = roughness == 0.0f || texture, .rough = roughness > 0.0f};
 }
 
+/// The facets of reflection and transmission. Smooth ones are stretched to rough ones where there is a tangent.
+LobeTraits base_facets(const Material& m) {
+    LobeTraits lobe = of_facets(m.roughness, m.metallic_roughness_texture);
+    lobe.rough = lobe.rough || m.anisotropy > 0.0f;
+    return lobe;
+}
+
 /// How the material, which is not unlit, has the lobe: one function a row of LOBES, a row without one does not link.
 template <Lobe lobe> LobeTraits lobe_of(const Material& m);
 
@@ -51,12 +58,12 @@ template <> LobeTraits lobe_of<Lobe::diffuse>(const Material& m) {
 
 template <> LobeTraits lobe_of<Lobe::reflection>(const Material& m) {
     if (!has_metal(m) && !has_coat(m) && !is_glass(m)) return {};
-    return of_facets(m.roughness, m.metallic_roughness_texture);
+    return base_facets(m);
 }
 
 template <> LobeTraits lobe_of<Lobe::transmission>(const Material& m) {
     if (!is_glass(m)) return {};
-    LobeTraits lobe = of_facets(m.roughness, m.metallic_roughness_texture);
+    LobeTraits lobe = base_facets(m);
     lobe.smooth = lobe.smooth || m.ior == 1.0f;  // no facet bends it
     return lobe;
 }
@@ -128,6 +135,8 @@ SurfaceTraits traits_of(const Material& m, float least_alpha) {
     t.specular_glass = is_glass(m) && (m.specular != 1.0f || m.specular_color != white || m.specular_texture ||
                                        m.specular_color_texture);
     t.disperses = is_solid_glass(m) && m.dispersion > 0.0f && m.ior > 1.0f;
+    t.anisotropic = m.anisotropy > 0.0f && t.has(Lobe::reflection);
+    t.iridescent = m.iridescence > 0.0f && t.has(Lobe::reflection);
     t.normal_map = m.normal_texture || (t.has(Lobe::clearcoat) && m.clearcoat_normal_texture);
     return t;
 }
@@ -163,6 +172,15 @@ gpu::SurfaceMaterial surface_of(const Material& m, const SurfaceTraits& traits, 
         // Abbe number V = (n_d - 1) / (n_F - n_C), lines d, F, C of the spectrum; micrometres.
         const double abbe = 20.0 / double(m.dispersion);
         surface.cauchy = float((double(m.ior) - 1.0) / (abbe * (1.0 / (0.4861 * 0.4861) - 1.0 / (0.6563 * 0.6563))));
+    }
+    if (traits.anisotropic) {
+        const double angle = m.anisotropy_rotation;
+        surface.anisotropy = {float(std::cos(angle)), float(std::sin(angle)), m.anisotropy};
+    }
+    if (traits.iridescent) {
+        surface.iridescence = m.iridescence;
+        surface.film_index = m.iridescence_ior;
+        surface.film_thickness = 1e-3f * glm::vec2(m.iridescence_thickness_minimum, m.iridescence_thickness_maximum);
     }
     surface.clearcoat = m.clearcoat;
     surface.clearcoat_roughness = m.clearcoat_roughness;
@@ -207,6 +225,10 @@ std::string describe_material(const Material& m, const SurfaceTraits& t) {
     }
     if (t.has(Lobe::clearcoat))
         parts.push_back(fmt::format("clearcoat {:g}, {}", m.clearcoat, roughness(m.clearcoat_roughness)));
+    if (t.anisotropic) parts.push_back(fmt::format("facets wider along a tangent by strength {:g}", m.anisotropy));
+    if (t.iridescent)
+        parts.push_back(fmt::format("thin film {:g} of ior {:g}, {:g} nm", m.iridescence, m.iridescence_ior,
+                                    m.iridescence_thickness_maximum));
     if (parts.empty()) parts.push_back("black");
     if (t.alpha)
         parts.push_back(m.alpha == Material::Alpha::mask ? fmt::format("there where alpha >= {:g}", m.alpha_cutoff)

@@ -45,6 +45,8 @@ struct SurfaceTraits {
     bool unlit = false;
     bool textured = false;
     bool normal_map = false;
+    bool anisotropic = false;
+    bool iridescent = false;
     bool emits = false;
     bool has(Lobe lobe) const { return lobes[std::size_t(lobe)].there(); }
     bool smooth() const { return std::ranges::any_of(lobes, &LobeTraits::smooth); }

@@ -69,8 +69,8 @@ struct Rendering {
     Report report;
     Curve curve;  // at every is_snapshot() and after the last iteration, where measured
     /// [P] each, where the settings ask for them: ppm.radius (m), ppm.photons, ppm.batch, ppm.rejections,
-    /// ppm.statistic (over its threshold), ppm.iterations, Z (m along the camera's axis), Albedo.R/G/B, N.X/Y/Z; those
-    /// of error_channels().
+    /// ppm.statistic (over its threshold), ppm.iterations, Z (m along the camera's axis), Albedo.R/G/B, N.X/Y/Z,
+    /// A (share of eye paths that met a surface), direct, caustic and rest; those of error_channels().
     std::map<std::string, std::vector<float>> aovs;
     std::optional<ErrorEstimate> estimate;  // where asked for, of `least_estimated` iterations or more
     std::vector<std::string> warnings;      // what went wrong on the way, one line each

@@ -18,6 +18,7 @@ enum class Kind {
     method,     // how photons become radiance: vkcppm SCENE; entrants have their own
     bound,      // where it ends: all three, each of which says in its own words what that means to it
     picture,    // how the picture is made: all three
+    paths,      // likewise, and how many paths and how long: entrants may have their own
     view,       // likewise, and what it shows: that of another value is no reference for it
     parameter,  // of the estimators: vkcppm SCENE and race; entrants have their own
     channels,   // what is told besides the picture: vkcppm SCENE
@@ -27,7 +28,11 @@ enum class Kind {
 /// All but the bounds are part of what a render is: a checkpoint of another value cannot be gone on from.
 constexpr bool is_identity(Kind kind) { return kind != Kind::bound; }
 
-constexpr bool is_of_reference(Kind kind) { return kind == Kind::bound || kind == Kind::picture || kind == Kind::view; }
+constexpr bool is_of_reference(Kind kind) {
+    return kind == Kind::bound || kind == Kind::picture || kind == Kind::paths || kind == Kind::view;
+}
+
+constexpr bool is_of_entrant(Kind kind) { return kind == Kind::parameter || kind == Kind::paths; }
 
 /// Of a value, which tells how it is written.
 enum class Unit { count, number, metres, seconds, pixels, camera, name, flag };

@@ -25,7 +25,7 @@ SETTING(seconds, std::optional<double>, std::nullopt, "time", bound, between(0.0
         "Stop after the iteration in which this time has passed: 90, 90s, 2m, 1.5h, 500ms")
 
 // Absent: counted for the scene and the size of the picture (render/light_paths.h); resolved by what renders.
-SETTING(photons, std::optional<std::uint32_t>, std::nullopt, "photons", picture, within(1u, 1u << 24), count,
+SETTING(photons, std::optional<std::uint32_t>, std::nullopt, "photons", paths, within(1u, 1u << 24), count,
         "Light paths emitted an iteration (default: as many as suit scene and size;\n"
         "65536 with --direct gathered and of a reference)")
 
@@ -52,7 +52,7 @@ SETTING(seed, std::uint32_t, 1, "seed", picture, any(), count,
         "Same seed, same picture (default: {})")
 
 // Of a light path and of an eye path.
-SETTING(max_depth, std::uint32_t, 64, "max-depth", picture, within(1u, 1024u), count,
+SETTING(max_depth, std::uint32_t, 64, "max-depth", paths, within(1u, 1024u), count,
         "Bounces of a path (default: {})")
 
 SETTING(direct, std::string, direct_sampled, "direct", parameter,
@@ -83,8 +83,8 @@ SETTING(sectors, std::uint32_t, 6, "sectors", parameter, one_of(4u, 6u, 8u, 12u)
 
 SETTING(aovs, bool, false, "aovs", channels, any(), flag,
         "Add channels to the EXR: ppm.radius, ppm.photons, ppm.batch, ppm.rejections, ppm.statistic,\n"
-        "ppm.iterations; Z, Albedo, N of the first surfaces; and direct, caustic and rest, the layers of\n"
-        "the picture")
+        "ppm.iterations; Z, Albedo, N of the first surfaces; A, the share of eye paths that met one; and\n"
+        "direct, caustic and rest, the layers of the picture")
 
 SETTING(error, bool, false, "error", channels, any(), flag,
         "Estimate the error without a reference, noise and bias apart: of the picture, and of every pixel\n"

@@ -30,6 +30,7 @@ std::map<std::string, std::vector<float>> surface_channels(const IterationSums& 
     const auto mean = [](double sum, Sums s) { return s.hits > 0.0 ? sum / s.hits : 0.0; };
     add("Z", [&](Sums s) { return mean(s.depth, s) / scale; });
     const double iterations = std::max(1u, sums.iterations);
+    add("A", [&](Sums s) { return std::min(1.0, s.hits / iterations); });
     for (int c = 0; c < 3; ++c) {
         const std::string colour(1, "RGB"[c]);
         add("Albedo." + colour, [&](Sums s) { return mean(s.albedo[c], s); });

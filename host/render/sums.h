@@ -42,7 +42,7 @@ struct IterationSums {
 Image picture_of(const IterationSums& sums);
 
 /// Channels [P] of the surfaces: ppm.radius (m), ppm.photons, ppm.batch, ppm.rejections, ppm.statistic (over its
-/// threshold), ppm.iterations, Z (m), Albedo.R/G/B, N.X/Y/Z, and the layers direct, caustic and rest. scale: frame
+/// threshold), ppm.iterations, Z (m), Albedo.R/G/B, N.X/Y/Z, A, and the layers direct, caustic and rest. scale: frame
 /// units a metre.
 std::map<std::string, std::vector<float>> surface_channels(const IterationSums& sums, double scale);
 

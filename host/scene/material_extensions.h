@@ -60,6 +60,21 @@ EXTENSION(KHR_materials_clearcoat,
             clearcoat_normal_scale, m.clearcoat > 0.0f)
     TEXTURE(CLEARCOAT_ROUGHNESS, clearcoat_roughness_texture, "clearcoatRoughnessTexture", "clearcoat roughness",
             linear, m.clearcoat > 0.0f && m.clearcoat_roughness > 0.0f))  // g
+EXTENSION(KHR_materials_anisotropy,
+    FACTOR(anisotropy, "anisotropyStrength", 0.0f, 0.0, 1.0)
+    FACTOR(anisotropy_rotation, "anisotropyRotation", 0.0f, -FLT_MAX, FLT_MAX)  // from tangent to bitangent, rad
+    TEXTURE(ANISOTROPY, anisotropy_texture, "anisotropyTexture", "anisotropy", linear,  // rg: direction; b: strength
+            m.anisotropy > 0.0f))
+EXTENSION(KHR_materials_iridescence,
+    FACTOR(iridescence, "iridescenceFactor", 0.0f, 0.0, 1.0)
+    FACTOR(iridescence_ior, "iridescenceIor", 1.3f, 1.0, 100.0)
+    FACTOR(iridescence_thickness_minimum, "iridescenceThicknessMinimum", 100.0f, 0.0, FLT_MAX)  // nm
+    FACTOR(iridescence_thickness_maximum, "iridescenceThicknessMaximum", 400.0f, 0.0, FLT_MAX)
+    TEXTURE(IRIDESCENCE, iridescence_texture, "iridescenceTexture", "iridescence", linear,  // r
+            m.iridescence > 0.0f)
+    TEXTURE(IRIDESCENCE_THICKNESS, iridescence_thickness_texture, "iridescenceThicknessTexture",
+            "iridescence thickness", linear,  // g
+            m.iridescence > 0.0f))
 EXTENSION(KHR_materials_unlit)
 // clang-format on
 

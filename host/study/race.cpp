@@ -135,10 +135,14 @@ RaceResult run_race(const Scene& scene, const RaceSettings& race, const Image& r
     if (sppm != race.entrants.end()) result.baseline = std::size_t(sppm - race.entrants.begin());
 
     const SceneOnDevice on_device(device, flatten(scene));
-    // One number for all, of the first.
-    const Settings& first = race.entrants.front().settings;
-    const std::uint32_t photons = light_paths(on_device, camera_of(first, scene), first);
-    for (RaceRun& run : result.runs) run.entrant.settings.photons = photons;
+    // One number for all who have none of their own, counted for the first of them.
+    std::optional<std::uint32_t> photons;
+    for (RaceRun& run : result.runs) {
+        Settings& settings = run.entrant.settings;
+        if (settings.photons) continue;
+        if (!photons) photons = light_paths(on_device, camera_of(settings, scene), settings);
+        settings.photons = photons;
+    }
     const double begin = wall_now();
     for (std::uint32_t s = 0; s < race.seeds && !result.interrupted; ++s) {
         const std::uint32_t seed = race.entrants.front().settings.seed + s;

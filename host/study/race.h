@@ -25,7 +25,8 @@ struct Entrant {
 };
 
 struct RaceSettings {
-    /// One or more with different names. They differ in nothing but estimator and its parameters. Each gets, for every
+    /// One or more with different names. They differ in nothing but estimator, its parameters and the paths of an
+    /// iteration; those whose number of light paths is not set have one in common. Each gets, for every
     /// seed, Settings::iterations iterations, or the one in which Settings::seconds have passed on the clock of
     /// core/curve.h, whichever comes first. Settings::seed is the first seed, the others follow it.
     std::vector<Entrant> entrants;

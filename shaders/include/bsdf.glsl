@@ -1,7 +1,7 @@
 // How a surface scatters (BSDF): glTF 2.0, appendix B, and the extensions for specular, transmission, volume, ior,
-// clearcoat. Pure functions. A BSDF is a sum of lobes, a row of LOBES and a file in include/lobes each, over which
-// light paths, eye paths and the path tracer go. A lobe of width 0 is a delta: paths follow it and nothing is gathered
-// on it.
+// clearcoat, anisotropy, iridescence. Pure functions. A BSDF is a sum of lobes, a row of LOBES and a file in
+// include/lobes each, over which light paths, eye paths and the path tracer go. A lobe of width 0 is a delta: paths
+// follow it and nothing is gathered on it.
 // What lies below a coat is weakened by 1 - F(wo . h) with the half vector of the pair of directions, so that light
 // paths and eye paths see the same surface.
 #ifndef BSDF_GLSL
@@ -9,6 +9,7 @@
 
 #include "include/kernel.glsl"
 #include "include/colour.glsl"
+#include "include/film.glsl"
 #include "include/frame.glsl"
 #include "include/fresnel.glsl"
 #include "include/ggx.glsl"
@@ -20,6 +21,7 @@
 //   uint  name_gathers(bsdf)                  HIT_NONE, or on which sides photons are gathered on it
 //   float name_width(bsdf)                    alpha of its facets; 0: a delta; WIDE: it has none, and eye paths do not
 //                                             follow it; light paths and the path tracer do
+//   float name_stretch(bsdf)                  how much wider they are along the surface's tangent; 1: alike all around
 //   vec3  name_normal(surface)                about which it lies
 //   float name_weight(bsdf, surface, wo)      about what it sends on of light along wo, the largest channel: lobes are
 //                                             chosen in proportion
@@ -40,6 +42,7 @@ LOBES(LOBE_NUMBER)
 struct Bsdf {
     vec3 diffuse;           // albedo
     float alpha;            // of reflection and transmission
+    float stretch;          //   and how much wider along the tangent: include/ggx.glsl
     vec3 r0;                // reflectance of metal and coat at normal incidence (Schlick 1994)
     float r90;              //   and at grazing incidence
     vec3 transmission;      // tint
@@ -52,9 +55,17 @@ struct Bsdf {
     bool thin;              // transmission passes straight on
     float specular;         // of glass: strength and colour of what it reflects
     vec3 specular_color;
+    float film;             // share of the surface with a thin film: include/film.glsl
+    float film_index;
+    float film_thickness;   // micrometres
+    float metallic;         // below the film: the share of metal, and reflectances at normal incidence
+    vec3 metal0;
+    vec3 dielectric0;
 };
 
 const float CLEARCOAT_R0 = 0.04;
+// Width of anisotropic facets across the tangent at least: a line has no density.
+const float LEAST_ACROSS = 1e-3;
 
 // Reflectance of the clearcoat, and what it leaves to the lobes below.
 float clearcoat_fresnel(Bsdf b, float cosine) {
@@ -66,6 +77,11 @@ float clearcoat_fresnel(Bsdf b, float cosine) {
 
 float below_clearcoat(Bsdf b, float cosine) { return 1.0 - clearcoat_fresnel(b, cosine); }
 
+// Reflectance of the film and what is below it.
+vec3 below_film(Bsdf b, float cosine, vec3 r0) {
+    return film_reflectance(cosine, b.film_index, b.film_thickness, r0);
+}
+
 // Reflectance of a facet of glass, and the cosine beyond. KHR_materials_specular scales it at normal incidence by
 // colour and strength and at grazing by strength alone, which Schlick's (1 - cos)^5 tells apart, at the cosine in the
 // thinner medium from either side. Total reflection stays total: there is nowhere else to go.
@@ -76,12 +92,21 @@ vec3 glass_reflectance(Bsdf b, float cosine, out float cosine_t) {
         // Exactly Fresnel's where the factors are 1.
         r = b.specular * clamp(b.specular_color * r + (1.0 - b.specular_color) * grazing, vec3(0.0), vec3(1.0));
     }
+    // Seen from inside it is the same film, at the angle outside.
+    if (HAS_IRIDESCENCE && cosine_t > 0.0) {
+        r = mix(r, b.specular * below_film(b, min(cosine, cosine_t), b.dielectric0), b.film);
+    }
     return r;
 }
 
 // Reflectance of a facet of the reflection lobe.
 vec3 facet_reflectance(Bsdf b, float cosine) {
     vec3 r = b.r0 + (b.r90 - b.r0) * schlick_power(cosine);
+    if (HAS_IRIDESCENCE) {
+        vec3 filmed = b.metallic * below_film(b, cosine, b.metal0);
+        if (HAS_COAT) filmed += (b.r90 - b.metallic) * below_film(b, cosine, b.dielectric0);
+        r = mix(r, filmed, b.film);
+    }
     if (HAS_TRANSMISSION) {
         float cosine_t;
         r += b.glass * glass_reflectance(b, cosine, cosine_t);
@@ -102,6 +127,10 @@ float facet_transmittance(Bsdf b, float cosine) {
 // What the coat leaves to the diffuse base.
 float below_coat(Bsdf b, float cosine) {
     if (!HAS_COAT) return 1.0;
+    if (HAS_IRIDESCENCE && b.film > 0.0) {
+        vec3 coat = b.dielectric0 + (1.0 - b.dielectric0) * schlick_power(cosine);
+        return 1.0 - b.coat90 * largest(mix(coat, below_film(b, cosine, b.dielectric0), b.film));
+    }
     return 1.0 - (b.coat0 + (b.coat90 - b.coat0) * schlick_power(cosine));
 }
 
@@ -117,6 +146,14 @@ Bsdf bsdf_of(SurfaceMaterial material, float ior, bool front) {
     float opaque = (1.0 - material.metallic) - b.glass;  // dielectric that does not transmit
     b.diffuse = opaque * material.color;
     b.alpha = alpha_of(material.roughness);
+    b.stretch = 1.0;
+    if (HAS_ANISOTROPY && material.anisotropy.z > 0.0) {
+        // KHR_materials_anisotropy: wider along the tangent alone.
+        float across = max(b.alpha, LEAST_ACROSS);
+        float along = mix(across, 1.0, material.anisotropy.z * material.anisotropy.z);
+        b.alpha = sqrt(along * across);
+        b.stretch = sqrt(along / across);
+    }
     b.eta = front || b.thin ? 1.0 / ior : ior;
     b.r0 = material.metallic * material.color;
     b.r90 = material.metallic;
@@ -135,6 +172,15 @@ Bsdf bsdf_of(SurfaceMaterial material, float ior, bool front) {
         float root = (1.0 - ior) / (1.0 + ior);
         b.specular_color = min(material.specular_color, vec3(1.0 / max(1e-30, root * root)));
     }
+    if (HAS_IRIDESCENCE) {
+        float root = (1.0 - ior) / (1.0 + ior);
+        b.film = material.iridescence;
+        b.film_index = material.film_index;
+        b.film_thickness = material.film_thickness.y;
+        b.metallic = material.metallic;
+        b.metal0 = material.color;
+        b.dielectric0 = min(root * root * material.specular_color, vec3(1.0));
+    }
     b.clearcoat = material.clearcoat;
     b.clearcoat_alpha = alpha_of(material.clearcoat_roughness);
     return b;
@@ -142,7 +188,8 @@ Bsdf bsdf_of(SurfaceMaterial material, float ior, bool front) {
 
 // Of a surface that takes all light in.
 Bsdf black() {
-    return Bsdf(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, false, 1.0, vec3(1.0));
+    return Bsdf(vec3(0.0), 0.0, 1.0, vec3(0.0), 0.0, vec3(0.0), 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, false, 1.0, vec3(1.0),
+                0.0, 1.0, 0.0, 0.0, vec3(0.0), vec3(0.0));
 }
 
 // Of a boundary of a solid that light does not see: all of it goes straight on.
@@ -175,10 +222,15 @@ float followed_weight(float density, float cosine) {
 
 // A rough lobe without its Fresnel term, times the weight of the part. density: of wi when it is sampled from wo by
 // visible normals; f cos / density is the masking then. Cosines to the lobe's own normal, that of wi of either sign.
-float rough_lobe(uint part, float alpha, float density, float wo_n, float wi_n) {
+float rough_lobe(uint part, Facets facets, float density, Pair pair, float wo_n, float wi_n) {
     float followed = followed_weight(density, wi_n);
     float weight = part == PART_ALL ? 1.0 : part == PART_FOLLOWED ? followed : 1.0 - followed;
-    return density * smith_masking(alpha, wo_n, wi_n) * weight / abs(wi_n);
+    return density * smith_masking(facets, pair.wo, wo_n, pair.wi, wi_n) * weight / abs(wi_n);
+}
+
+// The facets of reflection and transmission.
+Facets base_facets(Bsdf b, Surface surface) {
+    return facets_of(b.alpha, surface.normal, b.stretch, surface.tangent);
 }
 
 #include "include/lobes/diffuse.glsl"
@@ -215,6 +267,13 @@ float width_of(uint lobe, Bsdf b) {
 #define SELECT_WIDTH(number, NAME, name, present) if (present) width = lobe == number ? name##_width(b) : width;
     LOBES(SELECT_WIDTH)
     return width;
+}
+
+float stretch_of(uint lobe, Bsdf b) {
+    float stretch = 1.0;
+#define SELECT_STRETCH(number, NAME, name, present) if (present) stretch = lobe == number ? name##_stretch(b) : stretch;
+    LOBES(SELECT_STRETCH)
+    return stretch;
 }
 
 vec3 normal_of(uint lobe, Surface surface) {
@@ -286,7 +345,8 @@ vec3 sample_lobe(uint lobe, Bsdf b, Surface surface, vec2 u, bool radiance, inou
     density = DELTA;
     vec3 factor = vec3(0.0);
     // Once for all lobes: software Vulkan runs every branch for every lane.
-    Facet facet = sample_facet(width_of(lobe, b), normal_of(lobe, surface), -direction, u);
+    Facets facets = facets_of(width_of(lobe, b), normal_of(lobe, surface), stretch_of(lobe, b), surface.tangent);
+    Facet facet = sample_facet(facets, -direction, u);
 #define SAMPLE(number, NAME, name, present) \
     if (present && lobe == number) factor = name##_sample(b, surface, facet, u, radiance, direction, density);
     LOBES(SAMPLE)

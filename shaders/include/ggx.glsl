@@ -1,5 +1,6 @@
-// Lobes of microfacets: the distribution GGX (Trowbridge-Reitz; Walter et al. 2007) with Smith's height-correlated
-// masking (Heitz 2014), and one facet of a lobe as it is sampled. Pure functions.
+// Lobes of microfacets: the distribution GGX (Trowbridge-Reitz; Walter et al. 2007), stretched along a tangent where
+// they are anisotropic, with Smith's height-correlated masking (Heitz 2014), and one facet of a lobe as it is sampled.
+// Pure functions.
 #ifndef GGX_GLSL
 #define GGX_GLSL
 
@@ -19,30 +20,68 @@ const float WIDE = FAR;
 
 bool is_rough(float alpha) { return HAS_ROUGH && alpha > 0.0; }
 
-// Distribution of normals. sin^2 from the cross product: 1 - cos^2 would cancel where the lobe is narrow.
-float ggx(float alpha, vec3 n, vec3 h) {
-    vec3 s = cross(n, h);
-    float c = dot(n, h);
-    float e = dot(s, s) / alpha + c * c * alpha;
+// The facets of a lobe: of width `alpha` about the normal n. With anisotropy they are of width alpha * stretch along
+// the tangent t, which is perpendicular to n, and of alpha / stretch across it.
+struct Facets {
+    vec3 n;
+    float alpha;
+    vec3 t;
+    float stretch;
+};
+
+// tangent: of any length and direction where the stretch is 1.
+Facets facets_of(float alpha, vec3 n, float stretch, vec3 tangent) {
+    Facets f = Facets(n, alpha, tangent, stretch);
+    if (HAS_ANISOTROPY && stretch == 1.0) {
+        vec3 s;
+        tangents(n, f.t, s);
+    }
+    return f;
+}
+
+// Along the tangent and across it.
+vec2 across_normal(Facets f, vec3 w) { return vec2(dot(f.t, w), dot(cross(f.n, f.t), w)); }
+
+// Distribution of normals. sin^2 from products with what is perpendicular to n: 1 - cos^2 would cancel where the lobe
+// is narrow.
+float ggx(Facets f, vec3 h) {
+    float c = dot(f.n, h);
+    float sin2;
+    if (HAS_ANISOTROPY) {
+        vec2 s = across_normal(f, h) * vec2(1.0 / f.stretch, f.stretch);
+        sin2 = dot(s, s);
+    } else {
+        vec3 s = cross(f.n, h);
+        sin2 = dot(s, s);
+    }
+    float e = sin2 / f.alpha + c * c * f.alpha;
     return 1.0 / (PI * e * e);
 }
 
-// Smith's Lambda of a direction with that cosine to the normal.
-float smith_lambda(float alpha, float cosine) {
+// Smith's Lambda of a direction and its cosine to the normal, of either sign.
+float smith_lambda(Facets f, vec3 w, float cosine) {
     float cos2 = max(cosine * cosine, 1e-12);
-    return 0.5 * (sqrt(1.0 + alpha * alpha * max(0.0, 1.0 - cos2) / cos2) - 1.0);
+    float sin2;
+    if (HAS_ANISOTROPY) {
+        vec2 s = across_normal(f, w) * vec2(f.stretch, 1.0 / f.stretch);
+        sin2 = dot(s, s);
+    } else {
+        sin2 = max(0.0, 1.0 - cos2);
+    }
+    return 0.5 * (sqrt(1.0 + f.alpha * f.alpha * sin2 / cos2) - 1.0);
 }
 
-float smith_g1(float alpha, float cosine) { return 1.0 / (1.0 + smith_lambda(alpha, cosine)); }
+float smith_g1(Facets f, vec3 w, float cosine) { return 1.0 / (1.0 + smith_lambda(f, w, cosine)); }
 
 // G2 / G1(wo): what the masking of wi leaves of a direction sampled by visible normals.
-float smith_masking(float alpha, float wo_n, float wi_n) {
-    float lambda = smith_lambda(alpha, wo_n);
-    return (1.0 + lambda) / (1.0 + lambda + smith_lambda(alpha, wi_n));
+float smith_masking(Facets f, vec3 wo, float wo_n, vec3 wi, float wi_n) {
+    float lambda = smith_lambda(f, wo, wo_n);
+    return (1.0 + lambda) / (1.0 + lambda + smith_lambda(f, wi, wi_n));
 }
 
-// A microfacet normal seen from wo, in proportion to its visible area (Dupuy and Benyoub 2023), about +z.
-vec3 sample_visible_normal(float alpha, vec3 wo, vec2 u) {
+// A microfacet normal seen from wo, in proportion to its visible area (Dupuy and Benyoub 2023), about +z. alpha: along
+// x and y.
+vec3 sample_visible_normal(vec2 alpha, vec3 wo, vec2 u) {
     vec3 stretched = normalize(vec3(alpha * wo.xy, wo.z));
     float phi = 2.0 * PI * u.x;
     float z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z;
@@ -52,45 +91,50 @@ vec3 sample_visible_normal(float alpha, vec3 wo, vec2 u) {
 }
 
 // Density of `reflect` at a visible normal: of wi, per solid angle.
-float reflection_pdf(float alpha, vec3 n, vec3 wo, vec3 h) {
-    float cosine = dot(n, wo);
-    return ggx(alpha, n, h) * smith_g1(alpha, cosine) / (4.0 * cosine);
+float reflection_pdf(Facets f, vec3 wo, vec3 h) {
+    float cosine = dot(f.n, wo);
+    return ggx(f, h) * smith_g1(f, wo, cosine) / (4.0 * cosine);
 }
 
 // The same of refraction at h; eta = index on the side of wo / index beyond, wi_h = |wi . h|: Walter et al. 2007,
 // Eq. (17).
-float refraction_pdf(float alpha, vec3 n, float wo_n, vec3 h, float eta, float wo_h, float wi_h) {
+float refraction_pdf(Facets f, vec3 wo, float wo_n, vec3 h, float eta, float wo_h, float wi_h) {
     float d = eta * wo_h - wi_h;
-    return ggx(alpha, n, h) * smith_g1(alpha, wo_n) * wo_h / wo_n * wi_h / (d * d);
+    return ggx(f, h) * smith_g1(f, wo, wo_n) * wo_h / wo_n * wi_h / (d * d);
 }
 
 // ---- facets ----
 
-// A facet that scatters: of a lobe of width `alpha` about the normal n, as wo sees it.
+// A facet that scatters, as wo sees it.
 struct Facet {
-    vec3 n;
-    float alpha;
-    vec3 h;      // the facet's normal; n where the lobe is a delta
+    Facets of;
+    vec3 h;      // the facet's normal; that of its lobe where the lobe is a delta
     float wo_n;  // cosines, at most 1
     float wo_h;
-    bool rough;  // drawn by visible normals, else h = n
+    bool rough;  // drawn by visible normals, else h is the normal of its lobe
 };
 
-Facet smooth_facet(vec3 n, vec3 wo) {
-    float cosine = min(1.0, dot(wo, n));
-    return Facet(n, 0.0, n, cosine, cosine, false);
+Facet smooth_facet(Facets of, vec3 wo) {
+    float cosine = min(1.0, dot(wo, of.n));
+    return Facet(of, of.n, cosine, cosine, false);
 }
 
 // u: two numbers in [0, 1).
-Facet sample_facet(float alpha, vec3 n, vec3 wo, vec2 u) {
-    Facet facet = smooth_facet(n, wo);
-    facet.alpha = alpha;
-    facet.rough = is_rough(alpha) && alpha != WIDE;
+Facet sample_facet(Facets of, vec3 wo, vec2 u) {
+    Facet facet = smooth_facet(of, wo);
+    facet.rough = is_rough(of.alpha) && of.alpha != WIDE;
     if (facet.rough) {
-        vec3 t, s;
-        tangents(n, t, s);
-        vec3 local = sample_visible_normal(alpha, vec3(dot(wo, t), dot(wo, s), dot(wo, n)), u);
-        facet.h = normalize(local.x * t + local.y * s + local.z * n);
+        vec3 t = of.t;
+        vec3 s;
+        vec2 alpha = vec2(of.alpha);
+        if (HAS_ANISOTROPY) {
+            s = cross(of.n, t);
+            alpha *= vec2(of.stretch, 1.0 / of.stretch);
+        } else {
+            tangents(of.n, t, s);
+        }
+        vec3 local = sample_visible_normal(alpha, vec3(dot(wo, t), dot(wo, s), dot(wo, of.n)), u);
+        facet.h = normalize(local.x * t + local.y * s + local.z * of.n);
         facet.wo_h = min(1.0, dot(wo, facet.h));
     }
     return facet;
@@ -109,12 +153,12 @@ float reflect_at(Facet facet, Surface surface, inout vec3 direction, inout float
     if (facet.rough) {
         vec3 wo = -direction;
         direction = reflect(direction, facet.h);
-        float wi_n = dot(direction, facet.n);
+        float wi_n = dot(direction, facet.of.n);
         bool lost = wi_n <= 0.0 || dot(direction, surface.geometric) <= 0.0;
-        if (!lost) density = reflection_pdf(facet.alpha, facet.n, wo, facet.h);
-        masking = lost ? 0.0 : smith_masking(facet.alpha, facet.wo_n, wi_n);
+        if (!lost) density = reflection_pdf(facet.of, wo, facet.h);
+        masking = lost ? 0.0 : smith_masking(facet.of, wo, facet.wo_n, direction, wi_n);
     } else {
-        direction = mirror_direction(direction, facet.n, surface.geometric);
+        direction = mirror_direction(direction, facet.of.n, surface.geometric);
     }
     return masking;
 }

@@ -14,6 +14,7 @@ struct Surface {
     vec3 geometric;         // unit normals on the side of the incoming ray
     vec3 normal;            // shading
     vec3 clearcoat_normal;  // of the coat on top
+    vec3 tangent;           // unit, about `normal`: where anisotropic facets are wider
     float error;            // rays start this far from `position` along +-geometric
     bool front;             // met from the front of the triangle
     uint material;
@@ -70,6 +71,7 @@ Surface surface_at(inout Hit hit, vec3 direction) {
         if (dot(surface.normal, direction) >= 0.0) surface.normal = surface.geometric;
     }
     surface.clearcoat_normal = surface.normal;
+    surface.tangent = vec3(0.0);
     return surface;
 }
 
@@ -116,22 +118,58 @@ vec4 tangent_at(Hit hit, vec3 front_normal, bool second_uv) {
     return vec4(t, -turn * hand);
 }
 
+// The unit tangent and bitangent about the normal `front_normal` on the front of the triangle; false: there are none.
+bool tangent_frame(Hit hit, vec3 front_normal, bool second_uv, out vec3 t, out vec3 b) {
+    vec4 tangent = tangent_at(hit, front_normal, second_uv);
+    t = tangent.xyz - front_normal * dot(front_normal, tangent.xyz);
+    float length2 = dot(t, t);
+    t *= inversesqrt(length2);
+    b = cross(front_normal, t) * tangent.w;
+    return tangent.w != 0.0 && length2 != 0.0;
+}
+
+bool has_second_uv(uint texture_number) {
+    return texture_number != 0u && (textures_at(texture_number - 1u).flags & TEXTURE_SECOND_UV) != 0u;
+}
+
 // The normal `front_normal` bent by a normal texture; both on the front of the triangle.
 vec3 bent_normal(Hit hit, vec3 front_normal, uint texture_number, float scale, vec4 coordinates) {
     if (texture_number == 0u) return front_normal;
-    bool second_uv = (textures_at(texture_number - 1u).flags & TEXTURE_SECOND_UV) != 0u;
-    vec4 tangent = tangent_at(hit, front_normal, second_uv);
-    vec3 t = tangent.xyz - front_normal * dot(front_normal, tangent.xyz);
-    float length2 = dot(t, t);
-    if (tangent.w == 0.0 || length2 == 0.0) return front_normal;
-    t *= inversesqrt(length2);
-    vec3 b = cross(front_normal, t) * tangent.w;
+    vec3 t, b;
+    if (!tangent_frame(hit, front_normal, has_second_uv(texture_number), t, b)) return front_normal;
     vec3 n = texture_at(texture_number, coordinates).xyz * 2.0 - 1.0;
     n.xy *= scale;
     return normalize(n.x * t + n.y * b + n.z * front_normal);
 }
 
-// The material at the hit. Bends the normals of the surface where it has normal textures.
+// Turns the tangent of the surface to where the facets of the material are wider, in the frame that normal textures are
+// in: of the texture coordinates of the normal texture, else of the anisotropy texture, else of the first set. Without
+// such a frame the material has no anisotropy.
+void set_tangent(Hit hit, inout Surface surface, inout SurfaceMaterial material) {
+    bool second_uv = false;
+    vec2 direction = vec2(1.0, 0.0);
+    if (HAS_TEXTURES && has(material, SURFACE_TEXTURED)) {
+        uint number = material.texture[TEXTURE_ANISOTROPY];
+        if (number != 0u) {
+            vec3 texel = texture_at(number, texcoords_at(hit.triangle, hit.barycentric)).rgb;
+            direction = texel.rg * 2.0 - 1.0;
+            material.anisotropy.z *= texel.b;
+        }
+        uint bending = material.texture[TEXTURE_NORMAL];
+        second_uv = has_second_uv(bending != 0u ? bending : number);
+    }
+    vec2 turn = material.anisotropy.xy;
+    direction = vec2(turn.x * direction.x - turn.y * direction.y, turn.y * direction.x + turn.x * direction.y);
+    vec3 t, b;
+    bool framed = tangent_frame(hit, surface.front ? surface.normal : -surface.normal, second_uv, t, b);
+    if (framed && direction != vec2(0.0)) {
+        surface.tangent = normalize(direction.x * t + direction.y * b);
+    } else {
+        material.anisotropy.z = 0.0;
+    }
+}
+
+// The material at the hit. Bends the normals of the surface where it has normal textures, and turns its tangent.
 SurfaceMaterial material_at(Hit hit, vec3 direction, inout Surface surface) {
     SurfaceMaterial material = materials_at(surface.material);
     if (HAS_VERTEX_COLORS) {
@@ -161,6 +199,12 @@ SurfaceMaterial material_at(Hit hit, vec3 direction, inout Surface surface) {
             material.clearcoat *= texture_at(material.texture[TEXTURE_CLEARCOAT], coordinates).r;
             material.clearcoat_roughness *= texture_at(material.texture[TEXTURE_CLEARCOAT_ROUGHNESS], coordinates).g;
         }
+        if (HAS_IRIDESCENCE) {
+            // The thickness is the most without a texture.
+            float thick = texture_at(material.texture[TEXTURE_IRIDESCENCE_THICKNESS], coordinates).g;
+            material.iridescence *= texture_at(material.texture[TEXTURE_IRIDESCENCE], coordinates).r;
+            material.film_thickness.y = mix(material.film_thickness.x, material.film_thickness.y, thick);
+        }
         if (HAS_NORMAL_MAPS) {
             float side = surface.front ? 1.0 : -1.0;
             vec3 n = side * surface.normal;
@@ -174,6 +218,7 @@ SurfaceMaterial material_at(Hit hit, vec3 direction, inout Surface surface) {
             }
         }
     }
+    if (HAS_ANISOTROPY && material.anisotropy.z > 0.0) set_tangent(hit, surface, material);
     return material;
 }
 

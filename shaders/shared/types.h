@@ -87,7 +87,9 @@ using uint = std::uint32_t;
     SETTING(25, DIRECT, direct light asked for)                                                                \
     SCENE(26, INSTANCES, instances)              /* of meshes that are stored once */                          \
     MATERIAL(27, SPECULAR_GLASS, specular factors of glass, specular_glass)                                    \
-    SCENE(28, NESTED, solids in one another)     /* or that touch or overlap: include/media.glsl */          \
+    SCENE(28, NESTED, solids in one another)     /* or that touch or overlap: include/media.glsl */            \
+    MATERIAL(29, ANISOTROPY, anisotropy, anisotropic)         /* facets wider along a tangent than across it */ \
+    MATERIAL(30, IRIDESCENCE, iridescence, iridescent)        /* a thin film: include/film.glsl */             \
     SETTING(31, ERRORS, errors of pixels)        /* what they are estimated from: render/error_estimate.h */
 // clang-format on
 #define FEATURE_BIT(bit, NAME, words) VKCPPM_CONST uint FEATURE_##NAME = 1u << bit;
@@ -145,7 +147,10 @@ FEATURE_TABLE(FEATURE_BIT_OF_MATERIAL, FEATURE_BIT, FEATURE_BIT)
 #define TEXTURE_CLEARCOAT 7
 #define TEXTURE_CLEARCOAT_ROUGHNESS 8
 #define TEXTURE_CLEARCOAT_NORMAL 9
-#define TEXTURE_COUNT 10
+#define TEXTURE_ANISOTROPY 10
+#define TEXTURE_IRIDESCENCE 11
+#define TEXTURE_IRIDESCENCE_THICKNESS 12
+#define TEXTURE_COUNT 13
 
 // Flags of a TextureLookup.
 #define TEXTURE_WRAP_S 0x3u      // WRAP_*
@@ -240,7 +245,7 @@ struct TriangleShading {
     uint material;     // index | SHADING_FLAT
 };
 
-// 144 bytes, read as 9 uvec4 texels, and of those only what the scene's features need. Factors as in glTF; a texture
+// 192 bytes, read as 12 uvec4 texels, and of those only what the scene's features need. Factors as in glTF; a texture
 // multiplies them.
 #define FIELDS_SurfaceMaterial(FIELD, ARRAY, OPTIONAL) \
     FIELD(vec3, color)      /* base colour */ \
@@ -261,7 +266,13 @@ struct TriangleShading {
     OPTIONAL(FEATURES_OF_LAYERS, 1.0f, float, normal_scale) \
     ARRAY(FEATURE_TEXTURES, uint, texture, TEXTURE_COUNT)  /* 1 + index of a TextureLookup; 0: none */ \
     OPTIONAL(FEATURE_TEXTURES, 1.0f, float, clearcoat_normal_scale) \
-    OPTIONAL(FEATURE_NESTED, 0u, uint, priority)  /* of the solid; where several are, the largest counts */
+    OPTIONAL(FEATURE_NESTED, 0u, uint, priority)  /* of the solid; where several are, the largest counts */ \
+    OPTIONAL(FEATURE_IRIDESCENCE, 0.0f, float, iridescence)  /* share of the surface with a film */ \
+    /* cosine and sine of the angle from the tangent to where the facets are wider; strength */ \
+    OPTIONAL(FEATURE_ANISOTROPY, vec3(1.0f, 0.0f, 0.0f), vec3, anisotropy) \
+    OPTIONAL(FEATURE_IRIDESCENCE, 1.0f, float, film_index) \
+    OPTIONAL(FEATURE_IRIDESCENCE, vec2(0.0f), vec2, film_thickness)  /* least and most, micrometres */ \
+    ARRAY(ANY_FEATURE, uint, unused, 2)
 RECORD(SurfaceMaterial)
 
 // 48 bytes, read as 3 uvec4 texels. uv' = (matrix.xy . uv, matrix.zw . uv) + offset.
@@ -643,7 +654,7 @@ struct Launch {
 static_assert(sizeof(BvhNode) == 64 && sizeof(InstanceNode) == 64 && sizeof(Instance) == 64);
 static_assert(sizeof(TriangleGeometry) == 48);
 static_assert(sizeof(TriangleShading) == 16);
-static_assert(sizeof(SurfaceMaterial) == 144 && sizeof(TextureLookup) == 48 && sizeof(Light) == 96);
+static_assert(sizeof(SurfaceMaterial) == 192 && sizeof(TextureLookup) == 48 && sizeof(Light) == 96);
 static_assert(sizeof(AskedLight) == 16);
 static_assert(sizeof(Photon) == 16 && sizeof(PhotonFlux) == 16);
 static_assert(sizeof(HitPosition) == 16 && sizeof(HitWeight) == 16 && sizeof(HitEmission) == 16 &&

@@ -96,6 +96,16 @@ std::vector<Case> cases() {
          }},
         {"dispersion", FEATURE_DISPERSION, glass([](Material& m) { m.dispersion = 0.5f; })},
         {"clearcoats", FEATURE_CLEARCOAT | FEATURE_GLOSS, diffuse([](Material& m) { m.clearcoat = 1.0f; })},
+        {"iridescence", FEATURE_IRIDESCENCE,
+         [](Scene& s, Settings&) {
+             for (Material& m : s.materials) m.iridescence = 1.0f;
+         }},
+        {"anisotropy", FEATURE_ANISOTROPY | FEATURE_GLOSS | FEATURE_ROUGH,
+         [](Scene& s, Settings&) {
+             checker(s);  // for the coordinates
+             for (Material& m : s.materials)
+                 if (m.metallic > 0.0f) m.roughness = 0.4f, m.anisotropy = 0.7f;
+         }},
         {"base colour textures", FEATURE_TEXTURES,
          [](Scene& s, Settings&) {
              const Texture t = checker(s);

@@ -167,7 +167,7 @@ TEST_F(RaceCli, EndsEarlyAndWritesWhatThereIs) {
     test::Process process({test::program(), "race", scene("torus"), "-o", "out", "--reference", "ref.exr", "--photons",
                            "1000", "--time", "1h", "--seeds", "3"},
                           folder_.path());
-    ASSERT_TRUE(process.wait_for_message(" left; MSE cppm "));
+    ASSERT_TRUE(process.wait_for_message(" left; relMSE without the worst 0.1 % cppm "));
     process.send(SIGINT);
     const auto result = process.wait();
     EXPECT_EQ(result.exit_code, 0) << result.err;

@@ -20,8 +20,8 @@ void main() {
     if (i >= launch.items) return;
     BsdfView view = views[min(i, uint(views.length()) - 1u)];
     SurfaceMaterial material = materials_at(view.material);
-    Surface surface = Surface(vec3(0.0), view.geometric, view.normal, view.clearcoat_normal, 0.0, view.front != 0u,
-                              view.material);
+    Surface surface = Surface(vec3(0.0), view.geometric, view.normal, view.clearcoat_normal, view.tangent, 0.0,
+                              view.front != 0u, view.material);
     Bsdf bsdf = bsdf_of(material, material.ior, surface.front);
     BsdfOutput result = BsdfOutput(LOBE_NONE, 1.0, inputs[i].incoming, vec3(0.0), 0.0, 0.0, 0.0, gathering_sides(bsdf),
                                    0.0, vec3(0.0), vec3(0.0));

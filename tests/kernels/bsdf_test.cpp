@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <numbers>
 #include <random>
 #include <string>
@@ -44,9 +45,12 @@ enum LobeIndex : std::uint32_t {
 // clang-format on
 
 constexpr std::uint32_t features = FEATURE_REFLECTION | FEATURE_TRANSMISSION | FEATURE_GLOSS | FEATURE_ROUGH |
-                                   FEATURE_COAT | FEATURE_CLEARCOAT | FEATURE_THIN | FEATURE_SPECULAR_GLASS;
+                                   FEATURE_COAT | FEATURE_CLEARCOAT | FEATURE_THIN | FEATURE_SPECULAR_GLASS |
+                                   FEATURE_ANISOTROPY | FEATURE_IRIDESCENCE;
 constexpr std::uint32_t knn = 10;
 constexpr float delta = 1e38f;  // densities above it are infinite
+// Of anisotropic facets, oblique to the azimuth of at_angle: 0.4 + 0.6 rad.
+const glm::vec3 tangent(0.5403023f, 0.84147098f, 0.0f);
 
 constexpr std::array roughnesses = {0.05f, 0.2f, 0.5f, 1.0f};
 constexpr std::array angles = {0.0, 25.0, 50.0, 70.0, 85.0};  // degrees
@@ -111,8 +115,25 @@ std::vector<Case> cases(float roughness) {
     add("clearcoat over a rougher metal",
         [=](Material& m) { m.metallic = 1.0f, m.clearcoat = 1.0f, m.clearcoat_roughness = 0.5f * roughness; });
     add("smooth clearcoat over gold", [](Material& m) { m.metallic = 1.0f, m.clearcoat = 0.9f; });
+    add("white metal, stretched",
+        [](Material& m) { m.metallic = 1.0f, m.base_color = glm::vec3(1.0f), m.anisotropy = 0.5f; });
+    add("stretched coat over diffuse", [](Material& m) { m.specular = 1.0f, m.anisotropy = 0.8f; });
+    from_both_sides("stretched glass", [=](Material& m) { glass(1.5f, 1.0f)(m), m.anisotropy = 0.6f; });
+    from_both_sides("stretched thin glass", [=](Material& m) { glass(1.5f, 0.0f)(m), m.anisotropy = 0.6f; });
+    const auto film = [](Material& m) { m.iridescence = 1.0f, m.iridescence_thickness_maximum = 350.0f; };
+    add("film over diffuse", [=](Material& m) { m.specular = 1.0f, film(m); });
+    add("film over gold", [=](Material& m) { m.metallic = 1.0f, m.base_color = {1.0f, 0.78f, 0.36f}, film(m); });
+    add("film over black metal", [=](Material& m) { m.metallic = 1.0f, m.base_color = glm::vec3(0.0f), film(m); });
+    add("film in part, denser than its base", [=](Material& m) {
+        m.metallic = 0.4f, m.specular = 0.8f, m.specular_color = {1.0f, 0.5f, 2.0f}, film(m);
+        m.iridescence = 0.7f, m.iridescence_ior = 1.9f;
+    });
+    from_both_sides("glass with a film", [=](Material& m) { glass(1.5f, 1.0f)(m), film(m); });
+    from_both_sides("thin glass with a film", [=](Material& m) { glass(1.5f, 0.0f)(m), film(m); });
+    from_both_sides("film around index 1", [=](Material& m) { glass(1.0f, 1.0f)(m), film(m); });
     add("everything", [](Material& m) {
         m.metallic = 0.2f, m.transmission = 0.4f, m.specular = 0.9f, m.clearcoat = 0.5f, m.clearcoat_roughness = 0.3f;
+        m.anisotropy = 0.7f, m.iridescence = 0.6f;
     });
     return list;
 }
@@ -123,6 +144,11 @@ oracle::Bsdf oracle_of(const Case& c) {
     b.base_color = glm::dvec3(m.base_color);
     b.metallic = m.metallic;
     b.alpha = double(m.roughness) * double(m.roughness);
+    b.anisotropy = m.anisotropy;
+    b.tangent = glm::dvec3(tangent);
+    b.film = m.iridescence;
+    b.film_ior = m.iridescence_ior;
+    b.film_thickness = m.iridescence_thickness_maximum;
     b.transmission = m.transmission;
     b.ior = b.refraction_ior = m.ior;
     b.specular = m.specular;
@@ -153,14 +179,16 @@ double critical_rounding(const Case& c, const glm::dvec3& wo, const glm::dvec3& 
     if (ratio == 1.0) return 0.0;
     const glm::dvec3 h = glm::normalize(wi.z > 0.0 ? wo + wi : ratio * wo + wi);
     const double cosine = glm::dot(wo, h), squared = 1.0 - ratio * ratio * (1.0 - cosine * cosine);
-    const double grazing = wi.z > 0.0 ? 0.0 : 6e-7 / std::max(1e-6, cosine);  // f falls with its square
-    return grazing + 4e-7 * std::max(1.0, ratio * ratio) / std::max(1e-6, std::abs(squared));
+    // f falls with its square.
+    const double off = wi.z > 0.0 ? 0.0 : 6e-7 / std::max(1e-7, cosine);
+    return off * (2.0 + off) + 4e-7 * std::max(1.0, ratio * ratio) / std::max(1e-12, std::abs(squared));
 }
 
 gpu::BsdfView view_of(const Case& c, const glm::vec3& outgoing, std::uint32_t lobe) {
     gpu::BsdfView view{};
     view.outgoing = outgoing;
     view.geometric = view.normal = view.clearcoat_normal = glm::vec3(0.0f, 0.0f, 1.0f);
+    view.tangent = tangent;
     view.front = c.front ? 1 : 0;
     view.lobe = lobe;
     return view;
@@ -212,7 +240,7 @@ protected:
 
 constexpr oracle::Lobe oracle_lobe[] = {oracle::Lobe::diffuse, oracle::Lobe::reflection, oracle::Lobe::transmission,
                                         oracle::Lobe::coat};
-static_assert(std::size(oracle_lobe) == lobe_count, "a lobe more: oracle_lobe, lobe_alpha, lobe_density, LobeCase");
+static_assert(std::size(oracle_lobe) == lobe_count, "a lobe more: oracle_lobe, lobe_widths, lobe_density, LobeCase");
 
 std::string text(const glm::dvec3& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z); }
 
@@ -229,9 +257,32 @@ template <typename Check> void for_views(Check check) {
     }
 }
 
-/// Alpha of the narrowest lobe of a width above 0.
+/// Alpha of the narrowest lobe of a width above 0, across the tangent.
 double narrowest(const oracle::Bsdf& b) {
     return b.coat > 0.0 && b.coat_alpha > 0.0 ? std::min(b.alpha, b.coat_alpha) : b.alpha;
+}
+
+/// Widths of a lobe along the tangent and across it.
+struct Widths {
+    double along, across;
+    /// Of the direction w, so much longer along and across.
+    static double stretched(const glm::dvec3& w, double along, double across) {
+        const glm::dvec3 t(tangent), s = glm::cross(glm::dvec3(0.0, 0.0, 1.0), t);
+        return std::hypot(along * glm::dot(w, t), across * glm::dot(w, s));
+    }
+    double ggx(const glm::dvec3& h) const {
+        const double tan2 = std::pow(stretched(h, 1.0 / along, 1.0 / across) / h.z, 2);
+        return 1.0 / (pi * along * across * std::pow(h.z * h.z * (1.0 + tan2), 2));
+    }
+    double g1(const glm::dvec3& wo) const {
+        return 2.0 / (1.0 + std::sqrt(1.0 + std::pow(stretched(wo, along, across) / wo.z, 2)));
+    }
+};
+
+Widths lobe_widths(LobeIndex lobe, const oracle::Bsdf& b) {
+    const double alpha = lobe == clearcoat ? b.coat_alpha : b.alpha;
+    const double strength = lobe == clearcoat ? 0.0 : b.anisotropy;
+    return {glm::mix(alpha, 1.0, strength * strength), alpha};
 }
 
 TEST_F(BsdfLobes, ValuesAreTheReferences) {
@@ -401,10 +452,11 @@ struct Warp {
     }
 };
 
-/// Density of wi that following one lobe of width alpha about +z has, 1/sr: visible normals (Heitz 2014) times the
+/// Density of wi that following one lobe of these widths about +z has, 1/sr: visible normals (Heitz 2014) times the
 /// Jacobian of reflection or of refraction (Walter et al. 2007, equations 14 and 17). ratio: index on the side of wo
 /// over that beyond.
-double lobe_density(LobeIndex lobe, double alpha, bool thin, double ratio, const glm::dvec3& wo, glm::dvec3 wi) {
+double lobe_density(LobeIndex lobe, const Widths& widths, bool thin, double ratio, const glm::dvec3& wo,
+                    glm::dvec3 wi) {
     if ((wi.z < 0.0) != (lobe == transmission)) return 0.0;
     if (lobe == diffuse) return wi.z / pi;
     double jacobian = 0.0;
@@ -420,10 +472,7 @@ double lobe_density(LobeIndex lobe, double alpha, bool thin, double ratio, const
         h = glm::normalize(wo + wi);
         jacobian = 0.25 / glm::dot(wo, h);
     }
-    const double tan2_h = (h.x * h.x + h.y * h.y) / (h.z * h.z), tan2_o = (wo.x * wo.x + wo.y * wo.y) / (wo.z * wo.z);
-    const double d = 1.0 / (pi * std::pow(alpha * h.z * h.z * (1.0 + tan2_h / (alpha * alpha)), 2));
-    const double g1 = 2.0 / (1.0 + std::sqrt(1.0 + alpha * alpha * tan2_o));
-    return d * g1 * glm::dot(wo, h) / wo.z * jacobian;
+    return widths.ggx(h) * widths.g1(wo) * glm::dot(wo, h) / wo.z * jacobian;
 }
 
 /// Bins of directions on one side of the surface: crowded about `peak`, aligned with the horizon.
@@ -483,38 +532,49 @@ private:
     Warp polar_, azimuth_;
 };
 
-/// Shares of the bins in what visible normals about +z refract, by midpoints over the normals: as a density of
-/// directions that falls like a root where refraction ends. FollowingAndGatheringMakeOneWhole holds that density to
-/// account.
-std::vector<double> refracted_shares(const SphereBins& bins, double alpha, double ratio, const glm::dvec3& wo) {
-    constexpr int steps = 700;
+/// Where a facet of normal h sends wo; none where refraction ends.
+std::optional<glm::dvec3> scattered(LobeIndex lobe, bool thin, double ratio, const glm::dvec3& wo,
+                                    const glm::dvec3& h) {
+    const double cosine = glm::dot(wo, h);
+    if (lobe == transmission && !thin) {
+        const double squared = 1.0 - ratio * ratio * (1.0 - cosine * cosine);
+        if (squared <= 0.0) return std::nullopt;
+        return glm::normalize((ratio * cosine - std::sqrt(squared)) * h - ratio * wo);
+    }
+    glm::dvec3 wi = 2.0 * cosine * h - wo;
+    if (lobe == transmission) wi.z = -wi.z;
+    return wi;
+}
+
+/// Shares of the bins in what visible normals about +z scatter, by points of a rule over the normals: for a density of
+/// directions that falls like a root where refraction ends, or that is a ridge. FollowingAndGatheringMakeOneWhole holds
+/// that density to account.
+template <typename Scatter>
+std::vector<double> shares_of_normals(const SphereBins& bins, const Widths& widths, const glm::dvec3& wo, bool through,
+                                      Scatter scatter) {
+    constexpr int normals = 500000;
     std::vector<double> shares(bins.count(), 0.0);
-    const double tan2_o = (1.0 - wo.z * wo.z) / (wo.z * wo.z);
-    const double g1 = 2.0 / (1.0 + std::sqrt(1.0 + alpha * alpha * tan2_o));
+    const glm::dvec3 x(tangent), y = glm::cross(glm::dvec3(0.0, 0.0, 1.0), x);
+    const double g1 = widths.g1(wo);
     double whole = 0.0;
-    for (int i = 0; i < steps; ++i) {
-        // tan^2 = alpha^2 (1 - t^2) / t^2 has the density D (n.h) where that of t is 2 t.
-        const double t = (i + 0.5) / steps, tangent = alpha * std::sqrt(1.0 - t * t) / t;
-        const double z = 1.0 / std::sqrt(1.0 + tangent * tangent), r = tangent * z;
-        for (int j = 0; j < steps; ++j) {
-            const double turn = 2.0 * pi * (j + 0.5) / steps;
-            const glm::dvec3 h(r * std::cos(turn), r * std::sin(turn), z);
-            const double cosine = glm::dot(wo, h);
-            if (cosine <= 0.0) continue;
-            const double share = 2.0 * t * g1 * cosine / (wo.z * z) / (double(steps) * steps);
-            whole += share;
-            const double squared = 1.0 - ratio * ratio * (1.0 - cosine * cosine);
-            if (squared <= 0.0) continue;
-            const glm::dvec3 wi = (ratio * cosine - std::sqrt(squared)) * h - ratio * wo;
-            if (wi.z < 0.0) shares[bins.bin_of(glm::normalize(wi))] += share;
-        }
+    for (int i = 0; i < normals; ++i) {
+        // Slopes of r times the widths, r^2 = (1 - t^2) / t^2, have the density D (n.h) where that of t is 2 t. Turns
+        // by the golden ratio: rows of a grid would lie along the edges of bins.
+        const double t = (i + 0.5) / normals, r = std::sqrt(1.0 - t * t);
+        const double turn = 2.0 * pi * std::fmod(i / std::numbers::phi, 1.0);
+        const glm::dvec3 h = glm::normalize(
+            r * (widths.along * std::cos(turn) * x + widths.across * std::sin(turn) * y) + glm::dvec3(0.0, 0.0, t));
+        const double cosine = glm::dot(wo, h);
+        if (cosine <= 0.0) continue;
+        const double share = 2.0 * t * g1 * cosine / (wo.z * h.z) / normals;
+        whole += share;
+        const std::optional<glm::dvec3> wi = scatter(h);
+        if (wi && (wi->z < 0.0) == through) shares[bins.bin_of(*wi)] += share;
     }
     EXPECT_NEAR(whole, 1.0, 1e-3) << "the density of visible normals";
     for (double& share : shares) share /= whole;
     return shares;
 }
-
-double lobe_alpha(LobeIndex lobe, const oracle::Bsdf& b) { return lobe == clearcoat ? b.coat_alpha : b.alpha; }
 
 TEST_F(BsdfLobes, TheDensityOfAllIsThatOfWhatIsChosenAndFollowed) {
     constexpr std::size_t samples = 1u << 10;
@@ -554,9 +614,9 @@ TEST_F(BsdfLobes, TheDensityOfAllIsThatOfWhatIsChosenAndFollowed) {
             if (std::abs(wi.z) < 1e-3) continue;
             double want = 0.0;
             for (std::uint32_t lobe = 0; lobe < lobe_count; ++lobe) {
-                const double width = lobe_alpha(LobeIndex(lobe), oracle);
-                if (probability[lobe] == 0.0 || width == 0.0) continue;
-                want += probability[lobe] * lobe_density(LobeIndex(lobe), width, oracle.thin, ratio, wo, wi);
+                const Widths widths = lobe_widths(LobeIndex(lobe), oracle);
+                if (probability[lobe] == 0.0 || widths.along == 0.0) continue;
+                want += probability[lobe] * lobe_density(LobeIndex(lobe), widths, oracle.thin, ratio, wo, wi);
             }
             const double relative = 3e-5 + 3e-6 / alpha + critical_rounding(c, wo, wi);
             ASSERT_NEAR(out.scatter, want, relative * want + 1e-6) << "wi " << text(wi) << ", lobe " << out.lobe;
@@ -580,10 +640,12 @@ TEST_F(BsdfLobes, DirectionsFollowTheDensityThatTheyReport) {
     constexpr std::size_t samples = 60000;
     const auto inputs = random_numbers(samples, 24);
     const std::array lobes = {
-        LobeCase{diffuse, "coat over diffuse"},      LobeCase{reflection, "gold"},
-        LobeCase{reflection, "glass from inside"},   LobeCase{transmission, "glass"},
-        LobeCase{transmission, "glass from inside"}, LobeCase{transmission, "diamond"},
-        LobeCase{transmission, "thin glass"},        LobeCase{clearcoat, "clearcoat over diffuse"}};
+        LobeCase{diffuse, "coat over diffuse"},         LobeCase{reflection, "gold"},
+        LobeCase{reflection, "glass from inside"},      LobeCase{transmission, "glass"},
+        LobeCase{transmission, "glass from inside"},    LobeCase{transmission, "diamond"},
+        LobeCase{transmission, "thin glass"},           LobeCase{clearcoat, "clearcoat over diffuse"},
+        LobeCase{reflection, "white metal, stretched"}, LobeCase{transmission, "stretched glass"},
+        LobeCase{transmission, "stretched thin glass"}};
     for (std::uint32_t lobe = 0; lobe < lobe_count; ++lobe) {
         EXPECT_TRUE(std::ranges::any_of(lobes, [&](const LobeCase& of) { return of.lobe == lobe; })) << "lobe " << lobe;
     }
@@ -594,10 +656,10 @@ TEST_F(BsdfLobes, DirectionsFollowTheDensityThatTheyReport) {
             const LobeIndex lobe = which.lobe;
             const glm::dvec3 wo = glm::normalize(glm::dvec3(outgoing));
             const oracle::Bsdf oracle = oracle_of(c);
-            const double alpha = lobe_alpha(lobe, oracle);
+            const Widths widths = lobe_widths(lobe, oracle);
             const double ratio = index_ratio(c);
             const bool thin = oracle.thin;
-            const auto density = [&](const glm::dvec3& wi) { return lobe_density(lobe, alpha, thin, ratio, wo, wi); };
+            const auto density = [&](const glm::dvec3& wi) { return lobe_density(lobe, widths, thin, ratio, wo, wi); };
 
             glm::dvec3 peak(-wo.x, -wo.y, wo.z);
             if (lobe == diffuse) peak = {0.0, 0.0, 1.0};
@@ -608,10 +670,15 @@ TEST_F(BsdfLobes, DirectionsFollowTheDensityThatTheyReport) {
                 peak.z = -std::sqrt(1.0 - across * across);
             }
             // Refraction bends what a facet's tilt does by the difference of the indices.
-            const double width = lobe == diffuse ? 1.0 : lobe == transmission && !thin ? 0.4 * alpha : alpha;
+            // As wide as a ridge is long: across it a bin holds all.
+            const double width = lobe == diffuse                 ? 1.0
+                                 : lobe == transmission && !thin ? 0.4 * widths.along
+                                                                 : widths.along;
             const SphereBins bins(peak, width);
-            std::vector<double> expected =
-                lobe == transmission && !thin ? refracted_shares(bins, alpha, ratio, wo) : bins.integrals(density);
+            const auto scatter = [&](const glm::dvec3& h) { return scattered(lobe, thin, ratio, wo, h); };
+            std::vector<double> expected = (lobe == transmission && !thin) || widths.along != widths.across
+                                               ? shares_of_normals(bins, widths, wo, lobe == transmission, scatter)
+                                               : bins.integrals(density);
             double whole = 0.0;
             for (const double p : expected) whole += p;
             // The rule's error: 30 of the samples, where a bin has thousands.
@@ -632,7 +699,7 @@ TEST_F(BsdfLobes, DirectionsFollowTheDensityThatTheyReport) {
                 ++observed[bins.bin_of(wi)];
                 if (std::abs(wi.z) < 1e-3) continue;
                 const double want = density(wi);
-                const double relative = 2e-5 + 3e-6 / alpha + critical_rounding(c, wo, wi);
+                const double relative = 2e-5 + 3e-6 / widths.across + critical_rounding(c, wo, wi);
                 ASSERT_NEAR(out.density, want, relative * want + 1e-6)
                     << "lobe " << lobe << ", wi " << text(wi) << ": density";
                 // f cos / density, lobe by lobe.

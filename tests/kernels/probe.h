@@ -92,6 +92,7 @@ struct BsdfView {
     vec3 geometric;
     vec3 normal;
     vec3 clearcoat_normal;
+    vec3 tangent;
     uint material;
     uint front;
     uint lobe;  // to follow; LOBE_NONE: each by its probability
@@ -132,6 +133,9 @@ struct TextureOutput {
     vec3 geometric;
     vec3 normal;
     vec3 clearcoat_normal;
+    vec3 tangent;
+    float anisotropy;
+    vec2 film;  // its share and thickness
 };
 
 struct WavelengthInput {

@@ -18,7 +18,7 @@ void main() {
     if (i >= launch.items) return;
     ScatterInput s = inputs[i];
     SurfaceMaterial material = materials_at(s.material);
-    Surface surface = Surface(vec3(0.0), s.geometric, s.normal, s.normal, 0.0, s.front != 0u, s.material);
+    Surface surface = Surface(vec3(0.0), s.geometric, s.normal, s.normal, vec3(0.0), 0.0, s.front != 0u, s.material);
     Bsdf bsdf = bsdf_of(material, material.ior, surface.front);
     float cosine = min(1.0, -dot(s.direction, s.normal));
     ScatterOutput result;

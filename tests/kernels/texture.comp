@@ -32,6 +32,9 @@ void main() {
         result.geometric = surface.geometric;
         result.normal = surface.normal;
         result.clearcoat_normal = surface.clearcoat_normal;
+        result.tangent = surface.tangent;
+        result.anisotropy = material.anisotropy.z;
+        result.film = vec2(material.iridescence, material.film_thickness.y);
     }
     outputs[i] = result;
 }

@@ -210,11 +210,20 @@ Scene textured_sheet(std::mt19937& random, bool tangents) {
         m.clearcoat_texture = texture(2, 3);
         m.clearcoat_roughness_texture = texture(3, 3);
         m.clearcoat_normal_texture = texture(2, 2);
+        m.anisotropy = 0.9f;
+        m.anisotropy_rotation = i % 2 ? 0.7f : 0.0f;
+        m.anisotropy_texture = texture(3, 4);
+        m.iridescence = 0.8f;
+        m.iridescence_texture = texture(2, 4);
+        m.iridescence_thickness_texture = texture(5, 2);
         // Blue of a normal map is positive.
         for (const auto& t : {m.normal_texture, m.clearcoat_normal_texture}) {
             auto& rgba = scene.images[t->image].rgba;
             for (std::size_t p = 2; p < rgba.size(); p += 4) rgba[p] |= 192;
         }
+        // The direction of the facets is a direction.
+        auto& directions = scene.images[m.anisotropy_texture->image].rgba;
+        for (std::size_t p = 0; p < directions.size(); p += 4) directions[p] |= 192;
         scene.materials.push_back(m);
     }
     for (std::uint32_t i = 0; i < 120; ++i) {
@@ -272,7 +281,8 @@ TEST_F(Textures, SurfacesAreTheReferences) {
                  {&material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture,
                   &material.emissive_texture, &material.transmission_texture, &material.specular_texture,
                   &material.specular_color_texture, &material.clearcoat_texture, &material.clearcoat_roughness_texture,
-                  &material.clearcoat_normal_texture}) {
+                  &material.clearcoat_normal_texture, &material.anisotropy_texture, &material.iridescence_texture,
+                  &material.iridescence_thickness_texture}) {
                 const Extent size = scene.images[(*texture)->image].size;
                 const glm::dvec2 place =
                     oracle::uv_at(scene, hit, (*texture)->uv_set) * glm::dvec2(size.width, size.height);
@@ -297,6 +307,9 @@ TEST_F(Textures, SurfacesAreTheReferences) {
             expect("transmission", out.metal[2], want.bsdf.transmission, 1e-5);
             expect("specular", out.metal[3], want.bsdf.specular, 1e-5);
             expect("clearcoat", out.clearcoat[0], want.bsdf.coat, 1e-5);
+            expect("film", out.film[0], want.bsdf.film, 1e-5);
+            expect("thickness of the film", 1e3 * out.film[1], want.bsdf.film_thickness, 1e-2);
+            expect("anisotropy", out.anisotropy, want.bsdf.anisotropy, 1e-5);
             expect("clearcoat alpha", out.clearcoat[1] * out.clearcoat[1], want.bsdf.coat_alpha, 1e-5);
             const double coverage = oracle::coverage(scene, hit);
             if (material.alpha != Material::Alpha::mask || std::abs(out.value.a - material.alpha_cutoff) > 1e-3) {
@@ -334,6 +347,7 @@ TEST_F(Textures, SurfacesAreTheReferences) {
                 };
                 expect_normal("normal", out.normal, want.bsdf.normal);
                 expect_normal("normal of the clearcoat", out.clearcoat_normal, want.bsdf.coat_normal);
+                expect_normal("tangent", out.tangent, want.bsdf.tangent);
                 ++normals;
                 mirrored += determinant > 0.0 ? 1 : 0;
                 backs += want.front ? 0 : 1;

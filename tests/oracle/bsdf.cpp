@@ -15,6 +15,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double coat_reflectance = 0.04;  // KHR_materials_clearcoat: index 1.5
+constexpr double least_across = 1e-3;      // width across the tangent where there is anisotropy
 constexpr double least_albedo = 0.05;      // of a rough lobe in the choice: its estimate may be far off
 
 double brightest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
@@ -38,42 +39,44 @@ struct Frame {
         y = glm::cross(z, x);
     }
     glm::dvec3 world(const glm::dvec3& local) const { return local.x * x + local.y * y + local.z * z; }
-    glm::dvec3 local(const glm::dvec3& world) const {
-        return {glm::dot(world, x), glm::dot(world, y), glm::dot(world, z)};
-    }
 };
 
-/// D(h), 1/sr: alpha^2 / (pi ((n.h)^2 (alpha^2 - 1) + 1)^2), zero behind; 1 - (n.h)^2 is taken as |n x h|^2, exact
-/// where alpha is small.
-double ggx(double alpha, const glm::dvec3& normal, const glm::dvec3& h) {
-    const double c = glm::dot(normal, h);
-    if (c <= 0.0) return 0.0;
-    const glm::dvec3 across = glm::cross(normal, h);
-    const double a2 = alpha * alpha;
-    const double denominator = c * c * a2 + glm::dot(across, across);
-    return a2 / (pi * denominator * denominator);
+glm::dvec3 sample_cosine(const glm::dvec3& normal, std::mt19937_64& random) {
+    const double radius2 = uniform(random), angle = 2.0 * pi * uniform(random);
+    const double radius = std::sqrt(radius2);
+    return Frame(normal).world({radius * std::cos(angle), radius * std::sin(angle), std::sqrt(1.0 - radius2)});
 }
 
-double masking_root(double alpha, double c) { return std::sqrt(alpha * alpha + (1.0 - alpha * alpha) * c * c); }
+}  // namespace
+
+/// D(h), 1/sr: 1 / (pi alpha_x alpha_y ((x.h)^2 / alpha_x^2 + (y.h)^2 / alpha_y^2 + (z.h)^2)^2), zero behind.
+double Bsdf::Facets::ggx(const glm::dvec3& h) const {
+    const double c = glm::dot(z, h);
+    if (c <= 0.0) return 0.0;
+    const double sum = std::pow(glm::dot(x, h) / alpha_x, 2) + std::pow(glm::dot(y, h) / alpha_y, 2) + c * c;
+    return 1.0 / (pi * alpha_x * alpha_y * sum * sum);
+}
+
+double Bsdf::Facets::masking_root(const glm::dvec3& w) const {
+    return std::hypot(alpha_x * glm::dot(x, w), alpha_y * glm::dot(y, w), glm::dot(z, w));
+}
 
 /// V of the absolute cosines, 1/sr.
-double visibility(double alpha, double co, double ci) {
-    return 0.5 / (ci * masking_root(alpha, co) + co * masking_root(alpha, ci));
+double Bsdf::Facets::visibility(const glm::dvec3& wo, const glm::dvec3& wi) const {
+    return 0.5 / (std::abs(glm::dot(wi, z)) * masking_root(wo) + std::abs(glm::dot(wo, z)) * masking_root(wi));
 }
 
 /// Density of visible normals, G1(wo) (wo.h) D(h) / (n.wo).
-double visible_normal_pdf(double alpha, const glm::dvec3& normal, const glm::dvec3& wo, const glm::dvec3& h) {
-    const double co = glm::dot(wo, normal), ch = glm::dot(wo, h);
+double Bsdf::Facets::visible_normal_pdf(const glm::dvec3& wo, const glm::dvec3& h) const {
+    const double co = glm::dot(wo, z), ch = glm::dot(wo, h);
     if (co <= 0.0 || ch <= 0.0) return 0.0;
-    return 2.0 * ch * ggx(alpha, normal, h) / (co + masking_root(alpha, co));
+    return 2.0 * ch * ggx(h) / (co + masking_root(wo));
 }
 
 /// Of visible_normal_pdf: the hemisphere stretched by alpha, its projected disk, and back.
-glm::dvec3 sample_visible_normal(double alpha, const glm::dvec3& normal, const glm::dvec3& wo,
-                                 std::mt19937_64& random) {
-    const Frame frame(normal);
-    const glm::dvec3 v = frame.local(wo);
-    const glm::dvec3 view = glm::normalize(glm::dvec3(alpha * v.x, alpha * v.y, v.z));
+glm::dvec3 Bsdf::Facets::sample_visible_normal(const glm::dvec3& wo, std::mt19937_64& random) const {
+    const glm::dvec3 view =
+        glm::normalize(glm::dvec3(alpha_x * glm::dot(x, wo), alpha_y * glm::dot(y, wo), glm::dot(z, wo)));
     // `across` lies in the surface's plane; `up` completes the view's own disk.
     const glm::dvec3 flat(-view.y, view.x, 0.0);
     const double length = glm::length(flat);
@@ -84,24 +87,27 @@ glm::dvec3 sample_visible_normal(double alpha, const glm::dvec3& normal, const g
     const double s = (1.0 + view.z) / 2.0;
     const double b = (1.0 - s) * std::sqrt(std::max(0.0, 1.0 - a * a)) + s * radius * std::sin(angle);
     const glm::dvec3 n = a * across + b * up + std::sqrt(std::max(0.0, 1.0 - a * a - b * b)) * view;
-    return frame.world(glm::normalize(glm::dvec3(alpha * n.x, alpha * n.y, std::max(1e-300, n.z))));
+    return world(glm::normalize(glm::dvec3(alpha_x * n.x, alpha_y * n.y, std::max(1e-300, n.z))));
 }
 
-glm::dvec3 sample_cosine(const glm::dvec3& normal, std::mt19937_64& random) {
-    const double radius2 = uniform(random), angle = 2.0 * pi * uniform(random);
-    const double radius = std::sqrt(radius2);
-    return Frame(normal).world({radius * std::cos(angle), radius * std::sin(angle), std::sqrt(1.0 - radius2)});
+Bsdf::Facets Bsdf::facets_of(Lobe lobe) const {
+    if (lobe == Lobe::coat || anisotropy == 0.0) {
+        const Frame frame(normal_of(lobe));
+        const double width = lobe == Lobe::coat ? coat_alpha : alpha;
+        return {frame.x, frame.y, frame.z, width, width};
+    }
+    const glm::dvec3 x = glm::normalize(tangent - glm::dot(tangent, normal) * normal);
+    const double across = std::max(alpha, least_across);
+    return {x, glm::cross(normal, x), normal, glm::mix(across, 1.0, anisotropy * anisotropy), across};
 }
-
-}  // namespace
 
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
 bool Bsdf::is_delta(Lobe lobe) const {
     switch (lobe) {
         case Lobe::diffuse: return false;
-        case Lobe::reflection: return alpha == 0.0;
-        case Lobe::transmission: return alpha == 0.0 || (!thin && refraction_ior == 1.0);
+        case Lobe::reflection: return alpha == 0.0 && anisotropy == 0.0;
+        case Lobe::transmission: return (alpha == 0.0 && anisotropy == 0.0) || (!thin && refraction_ior == 1.0);
         case Lobe::coat: return coat_alpha == 0.0;
     }
     return false;
@@ -129,12 +135,25 @@ double Bsdf::fresnel_exact(double cosine) const {
     return ior == 1.0 ? 0.0 : fresnel_dielectric(cosine, thin || front ? ior : 1.0 / ior);
 }
 
+/// Reflectance at normal incidence, without its strength.
+glm::dvec3 Bsdf::dielectric0() const {
+    const double normal_incidence = ior == 0.0 ? 1.0 : std::pow((1.0 - ior) / (1.0 + ior), 2);
+    return glm::min(normal_incidence * specular_color, 1.0);
+}
+
+/// KHR_materials_iridescence: what a surface reflects where it is partly covered by the film. `bare` without, `weight`
+/// times the film's over f0 with it; `cosine` on the side of the film.
+glm::dvec3 Bsdf::filmed(const glm::dvec3& bare, double weight, const glm::dvec3& f0, double cosine) const {
+    if (film == 0.0) return bare;
+    return glm::mix(bare, weight * fresnel_film(f0, cosine, film_ior, film_thickness), film);
+}
+
 /// KHR_materials_specular on glass: f0 times colour and strength, f90 times strength. A channel of colour c has c times
 /// the exact reflectance and 1 - c times Schlick's of a normal incidence of 0, at the larger of the angles on both
 /// sides; total reflection stays total.
 glm::dvec3 Bsdf::fresnel_glass(double cosine) const {
     const double exact = fresnel_exact(cosine);
-    if (ior == 1.0) return glm::dvec3(0.0);
+    if (ior == 1.0) return filmed(glm::dvec3(0.0), specular, dielectric0(), cosine);
     double larger = cosine;  // the cosine of the larger angle
     if (ior != 0.0) {
         const double sine = std::sqrt(1.0 - cosine * cosine) / (thin || front ? ior : 1.0 / ior);
@@ -144,20 +163,19 @@ glm::dvec3 Bsdf::fresnel_glass(double cosine) const {
     const double most = ior == 0.0 ? 1.0 : std::pow((1.0 + ior) / (1.0 - ior), 2);  // of f0 is 1
     const glm::dvec3 color = glm::min(specular_color, most);
     const glm::dvec3 mixed = color * exact + (1.0 - color) * fresnel_schlick(glm::dvec3(0.0), 1.0, larger);
-    return specular * glm::clamp(mixed, 0.0, 1.0);
+    return filmed(specular * glm::clamp(mixed, 0.0, 1.0), specular, dielectric0(), larger);
 }
 
 /// Of all channels alike, as much as the brightest leaves.
 double Bsdf::through_glass(double cosine) const { return 1.0 - brightest(fresnel_glass(cosine)); }
 
 glm::dvec3 Bsdf::fresnel_coat(double cosine) const {
-    const double normal_incidence = ior == 0.0 ? 1.0 : std::pow((1.0 - ior) / (1.0 + ior), 2);
-    return fresnel_schlick(glm::min(normal_incidence * specular_color, 1.0) * specular, specular, cosine);
+    return filmed(fresnel_schlick(dielectric0() * specular, specular, cosine), specular, dielectric0(), cosine);
 }
 
 glm::dvec3 Bsdf::reflectance(double cosine) const {
     glm::dvec3 sum(0.0);
-    if (metallic > 0.0) sum += metallic * fresnel_metal(base_color, cosine);
+    if (metallic > 0.0) sum += metallic * filmed(fresnel_metal(base_color, cosine), 1.0, base_color, cosine);
     if (metallic < 1.0 && transmission < 1.0) sum += (1.0 - metallic) * (1.0 - transmission) * fresnel_coat(cosine);
     if (transmits()) sum += (1.0 - metallic) * transmission * fresnel_glass(cosine);
     return sum;
@@ -217,15 +235,15 @@ glm::dvec3 Bsdf::evaluate(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi)
         return share * base_color / pi * (1.0 - brightest(fresnel_coat(oh))) * below_coat(oh);
     }
     if (co <= 0.0) return black;
+    const Facets facets = facets_of(lobe);
     if (lobe == Lobe::coat) {
         const glm::dvec3 h = half_vector(lobe, wo, wi);
-        return glm::dvec3((1.0 - below_coat(absolute_cosine(wo, h))) * ggx(coat_alpha, coat_normal, h) *
-                          visibility(coat_alpha, co, ci));
+        return glm::dvec3((1.0 - below_coat(absolute_cosine(wo, h))) * facets.ggx(h) * facets.visibility(wo, wi));
     }
     if (lobe == Lobe::reflection) {
         const glm::dvec3 h = half_vector(lobe, wo, wi);
         const double oh = absolute_cosine(wo, h);
-        return reflectance(oh) * (below_coat(oh) * ggx(alpha, normal, h) * visibility(alpha, co, ci));
+        return reflectance(oh) * (below_coat(oh) * facets.ggx(h) * facets.visibility(wo, wi));
     }
     const glm::dvec3 h = half_vector(lobe, wo, wi);
     const double oh = glm::dot(wo, h);
@@ -233,8 +251,8 @@ glm::dvec3 Bsdf::evaluate(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi)
     // Walter et al. 2007, equation 21, with the squared index of the side of wi: of radiance over squared index. Thin
     // and mirrored, the Jacobian turns it into F D V of reflection.
     return (1.0 - metallic) * transmission * base_color *
-           (below_coat(absolute_cosine(wo, normal)) * through_glass(std::min(oh, 1.0)) * ggx(alpha, normal, h) *
-            visibility(alpha, co, ci) * 4.0 * oh * half_vector_jacobian(lobe, wo, wi, h));
+           (below_coat(absolute_cosine(wo, normal)) * through_glass(std::min(oh, 1.0)) * facets.ggx(h) *
+            facets.visibility(wo, wi) * 4.0 * oh * half_vector_jacobian(lobe, wo, wi, h));
 }
 
 glm::dvec3 Bsdf::evaluate(const glm::dvec3& wo, const glm::dvec3& wi) const {
@@ -308,8 +326,7 @@ double Bsdf::lobe_pdf(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi) con
     }
     const glm::dvec3 h = half_vector(lobe, wo, wi);
     if (glm::dot(wo, h) <= 0.0 || (through && !thin && glm::dot(wi, h) >= 0.0)) return 0.0;
-    return visible_normal_pdf(lobe == Lobe::coat ? coat_alpha : alpha, normal_of(lobe), wo, h) *
-           half_vector_jacobian(lobe, wo, wi, h);
+    return facets_of(lobe).visible_normal_pdf(wo, h) * half_vector_jacobian(lobe, wo, wi, h);
 }
 
 double Bsdf::pdf(const Choice& choice, const glm::dvec3& wo, const glm::dvec3& wi) const {
@@ -348,8 +365,7 @@ std::optional<Bsdf::Sample> Bsdf::sample(const glm::dvec3& wo, std::mt19937_64& 
     if (lobe == Lobe::diffuse) {
         wi = sample_cosine(normal, random);
     } else {
-        const double a = lobe == Lobe::coat ? coat_alpha : alpha;
-        wi = scatter(lobe, wo, sample_visible_normal(a, normal_of(lobe), wo, random));
+        wi = scatter(lobe, wo, facets_of(lobe).sample_visible_normal(wo, random));
     }
     if (!wi || lobe_pdf(lobe, wo, *wi) == 0.0) {
         return std::nullopt;  // on the wrong side for this lobe: another's density does not account for it
@@ -362,24 +378,28 @@ std::optional<Bsdf::Sample> Bsdf::sample(const glm::dvec3& wo, std::mt19937_64& 
 
 glm::dvec3 Bsdf::lobe_albedo(Lobe lobe, const glm::dvec3& wo, int steps) const {
     const glm::dvec3& n = normal_of(lobe);
-    const double a = lobe == Lobe::coat ? coat_alpha : alpha;
-    const Frame frame(n);
+    const Facets facets = facets_of(lobe);
     glm::dvec3 sum(0.0);
     for (int i = 0; i < steps; ++i) {
-        // cos^2 = t for diffuse. Of the half vectors of D (n.h), tan^2 = alpha^2 (1 - t^2) / t^2, so that the
-        // density of t is 2 t: it takes away the pole of 1 / (n.h) at grazing half vectors.
+        // cos^2 = t for diffuse. Of the half vectors of D (n.h), the slopes are alpha_x r cos and alpha_y r sin with
+        // r^2 = (1 - t^2) / t^2, so that the density of t is 2 t: it takes away the pole of 1 / (n.h) at grazing half
+        // vectors.
         const double t = (i + 0.5) / steps;
-        const double sine2 = lobe == Lobe::diffuse ? 1.0 - t : a * a * (1.0 - t * t) / (t * t + a * a * (1.0 - t * t));
-        const double c = std::sqrt(1.0 - sine2);
         for (int j = 0; j < steps; ++j) {
             const double angle = 2.0 * pi * (j + 0.5) / steps;
-            const glm::dvec3 v =
-                frame.world({std::sqrt(sine2) * std::cos(angle), std::sqrt(sine2) * std::sin(angle), c});
             if (lobe == Lobe::diffuse) {
-                sum += evaluate(lobe, wo, v) * pi;
-            } else if (const auto wi = scatter(lobe, wo, v)) {
+                const double sine = std::sqrt(1.0 - t);
+                sum += pi *
+                       evaluate(lobe, wo, facets.world({sine * std::cos(angle), sine * std::sin(angle), std::sqrt(t)}));
+                continue;
+            }
+            const double r = std::sqrt(1.0 - t * t);
+            const glm::dvec3 local = glm::normalize(
+                glm::dvec3(facets.alpha_x * r * std::cos(angle), facets.alpha_y * r * std::sin(angle), t));
+            const glm::dvec3 h = facets.world(local);
+            if (const auto wi = scatter(lobe, wo, h)) {
                 sum += evaluate(lobe, wo, *wi) * (2.0 * t * std::abs(glm::dot(*wi, n))) /
-                       (ggx(a, n, v) * c * half_vector_jacobian(lobe, wo, *wi, v));
+                       (facets.ggx(h) * local.z * half_vector_jacobian(lobe, wo, *wi, h));
             }
         }
     }

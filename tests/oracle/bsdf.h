@@ -1,6 +1,6 @@
 #pragma once
-// How a surface scatters: the glTF 2.0 material (appendix B) with transmission, volume, ior, specular and clearcoat, in
-// double precision.
+// How a surface scatters: the glTF 2.0 material (appendix B) with transmission, volume, ior, specular, clearcoat,
+// anisotropy and iridescence, in double precision.
 
 #include <array>
 #include <optional>
@@ -21,7 +21,9 @@ inline constexpr Lobe all_lobes[] = {Lobe::diffuse, Lobe::reflection, Lobe::tran
 /// the surface; the normals are on the side of wo, which is the inside of a solid where `front` is false. Reflection
 /// goes to the geometric normal's side, transmission to the other.
 /// h is the half vector, D the GGX distribution, V = G2 / (4 |n.wo| |n.wi|) with the height-correlated Smith G2
-/// (Heitz 2014, "Understanding the Masking-Shadowing Function"). alpha == 0 is a delta lobe.
+/// (Heitz 2014, "Understanding the Masking-Shadowing Function"). alpha == 0 is a delta lobe, unless anisotropy
+/// stretches it: KHR_materials_anisotropy has alpha_t = mix(alpha, 1, strength^2) along the tangent and alpha_b = alpha
+/// across it, which is at least 0.001 there.
 /// A direction wo below a shading normal sees no rough lobe of that normal.
 struct Bsdf {
     glm::dvec3 geometric_normal{0.0, 0.0, 1.0};  // unit
@@ -29,7 +31,12 @@ struct Bsdf {
     glm::dvec3 coat_normal{0.0, 0.0, 1.0};       // unit, shading
     glm::dvec3 base_color{1.0};
     double metallic = 0.0;
-    double alpha = 1.0;  // roughness^2
+    double alpha = 1.0;                 // roughness^2
+    double anisotropy = 0.0;            // strength
+    glm::dvec3 tangent{1.0, 0.0, 0.0};  // unit, in the plane of the shading normal: where facets are wider
+    double film = 0.0;                  // share of the surface with a thin film: fresnel_film
+    double film_ior = 1.3;
+    double film_thickness = 400.0;  // nm
     double transmission = 0.0;
     double ior = 1.5;             // of reflectances; 0: infinite, reflectance 1
     double refraction_ior = 1.5;  // of Snell's law: differs where a path draws its wavelength here
@@ -87,9 +94,23 @@ struct Bsdf {
     bool transmits() const { return (1.0 - metallic) * transmission > 0.0; }
 
 private:
+    /// The distribution of half vectors: GGX of these widths along x and y about z.
+    struct Facets {
+        glm::dvec3 x, y, z;
+        double alpha_x, alpha_y;
+        double ggx(const glm::dvec3& h) const;
+        double masking_root(const glm::dvec3& w) const;
+        double visibility(const glm::dvec3& wo, const glm::dvec3& wi) const;
+        double visible_normal_pdf(const glm::dvec3& wo, const glm::dvec3& h) const;
+        glm::dvec3 sample_visible_normal(const glm::dvec3& wo, std::mt19937_64& random) const;
+        glm::dvec3 world(const glm::dvec3& local) const { return local.x * x + local.y * y + local.z * z; }
+    };
+    Facets facets_of(Lobe lobe) const;
     const glm::dvec3& normal_of(Lobe lobe) const { return lobe == Lobe::coat ? coat_normal : normal; }
     bool is_delta(Lobe lobe) const;
     bool has(Lobe lobe) const;
+    glm::dvec3 dielectric0() const;
+    glm::dvec3 filmed(const glm::dvec3& bare, double weight, const glm::dvec3& f0, double cosine) const;
     double fresnel_exact(double cosine) const;
     glm::dvec3 fresnel_glass(double cosine) const;
     double through_glass(double cosine) const;

@@ -15,12 +15,12 @@ namespace vkcppm::oracle {
 namespace {
 
 Scattering classify(const Bsdf& bsdf) {
-    if (bsdf.coat == 0.0) {
+    if (bsdf.coat == 0.0 && bsdf.film == 0.0) {
         if (bsdf.transmission == 1.0 && !bsdf.thin && bsdf.metallic == 0.0 && bsdf.alpha == 0.0 &&
-            bsdf.base_color == glm::dvec3(1.0)) {
+            bsdf.anisotropy == 0.0 && bsdf.base_color == glm::dvec3(1.0)) {
             return Scattering::glass;
         }
-        if (bsdf.metallic == 1.0 && bsdf.alpha == 0.0) return Scattering::mirror;
+        if (bsdf.metallic == 1.0 && bsdf.alpha == 0.0 && bsdf.anisotropy == 0.0) return Scattering::mirror;
         if (bsdf.metallic == 0.0 && bsdf.specular == 0.0 && bsdf.transmission == 0.0) return Scattering::lambert;
     }
     return Scattering::mixed;
@@ -77,6 +77,31 @@ glm::dvec3 mapped_normal(const Scene& scene, const Hit& hit, const glm::dvec3& n
     return glm::length(sum) > 0.0 ? glm::normalize(sum) : normal;
 }
 
+/// KHR_materials_anisotropy: strength, and the direction where facets are wider, about the normal as the front sees it.
+/// Its tangent space is that of the normal texture, else of its own texture, else of the first coordinates; without one
+/// there is no anisotropy.
+void set_anisotropy(const Scene& scene, const Hit& hit, const glm::dvec3& normal, const Material& material,
+                    Bsdf& bsdf) {
+    if (material.anisotropy == 0.0f) return;
+    const std::optional<Texture>& texture = material.anisotropy_texture;
+    const std::uint32_t uv_set = material.normal_texture ? material.normal_texture->uv_set
+                                 : texture               ? texture->uv_set
+                                                         : 0;
+    const TangentSpace space = tangent_space(scene, hit, normal, uv_set);
+    const glm::dvec3 tangent = space.tangent - glm::dot(space.tangent, normal) * normal;
+    if (glm::length(tangent) == 0.0) return;
+    glm::dvec3 direction(1.0, 0.0, 1.0);  // and strength
+    if (texture) {
+        const glm::dvec4 texel = lookup(scene, hit, texture, Encoding::linear);
+        direction = {2.0 * texel.r - 1.0, 2.0 * texel.g - 1.0, texel.b};
+    }
+    const double angle = std::atan2(direction.y, direction.x) + double(material.anisotropy_rotation);
+    const glm::dvec3 x = glm::normalize(tangent);
+    const glm::dvec3 y = glm::cross(normal, x) * (glm::dot(glm::cross(normal, x), space.bitangent) < 0.0 ? -1.0 : 1.0);
+    bsdf.anisotropy = material.anisotropy * direction.z;
+    bsdf.tangent = std::cos(angle) * x + std::sin(angle) * y;
+}
+
 }  // namespace
 
 Surface surface_at(const Scene& scene, const Hit& hit, const glm::dvec3& direction) {
@@ -120,8 +145,14 @@ Surface surface_at(const Scene& scene, const Hit& hit, const glm::dvec3& directi
     bsdf.coat_alpha = coat_roughness * coat_roughness;
     bsdf.coat_normal = side * mapped_normal(scene, hit, vertex_normal, material.clearcoat_normal_texture,
                                             material.clearcoat_normal_scale);
+    bsdf.film = material.iridescence * lookup(scene, hit, material.iridescence_texture, Encoding::linear).r;
+    bsdf.film_ior = material.iridescence_ior;
+    bsdf.film_thickness =
+        glm::mix(double(material.iridescence_thickness_minimum), double(material.iridescence_thickness_maximum),
+                 lookup(scene, hit, material.iridescence_thickness_texture, Encoding::linear).g);
     bsdf.thin = material.thickness == 0.0f;
     bsdf.front = surface.front;
+    set_anisotropy(scene, hit, side * surface.shading_normal, material, bsdf);
     surface.scattering = classify(bsdf);
     return surface;
 }

@@ -53,6 +53,12 @@ TEST(GltfMaterial, ReadsEveryFactorOfAMaterial) {
                    {{"thicknessFactor", 2}, {"attenuationDistance", 3}, {"attenuationColor", {0.5, 0.6, 0.7}}}},
                   {"KHR_materials_clearcoat", {{"clearcoatFactor", 0.625}, {"clearcoatRoughnessFactor", 0.375}}},
                   {"KHR_materials_dispersion", {{"dispersion", 0.36}}},
+                  {"KHR_materials_anisotropy", {{"anisotropyStrength", 0.75}, {"anisotropyRotation", -7}}},
+                  {"KHR_materials_iridescence",
+                   {{"iridescenceFactor", 0.5},
+                    {"iridescenceIor", 1.75},
+                    {"iridescenceThicknessMinimum", 50},
+                    {"iridescenceThicknessMaximum", 900}}},
                   {"KHR_materials_specular", {{"specularFactor", 0}, {"specularColorFactor", {1, 2, 3}}}}}},
             })
             .materials.at(0);
@@ -75,6 +81,12 @@ TEST(GltfMaterial, ReadsEveryFactorOfAMaterial) {
     EXPECT_EQ(m.clearcoat, 0.625f);
     EXPECT_EQ(m.clearcoat_roughness, 0.375f);
     EXPECT_EQ(m.dispersion, 0.36f);
+    EXPECT_EQ(m.anisotropy, 0.75f);
+    EXPECT_EQ(m.anisotropy_rotation, -7.0f);
+    EXPECT_EQ(m.iridescence, 0.5f);
+    EXPECT_EQ(m.iridescence_ior, 1.75f);
+    EXPECT_EQ(m.iridescence_thickness_minimum, 50.0f);
+    EXPECT_EQ(m.iridescence_thickness_maximum, 900.0f);
     EXPECT_FALSE(m.unlit);
 }
 
@@ -100,6 +112,12 @@ TEST(GltfMaterial, GivesGltfsDefaultsToAnEmptyMaterialAndToNone) {
         EXPECT_EQ(m.dispersion, 0.0f);
         EXPECT_EQ(m.clearcoat, 0.0f);
         EXPECT_EQ(m.clearcoat_roughness, 0.0f);
+        EXPECT_EQ(m.anisotropy, 0.0f);
+        EXPECT_EQ(m.anisotropy_rotation, 0.0f);
+        EXPECT_EQ(m.iridescence, 0.0f);
+        EXPECT_EQ(m.iridescence_ior, 1.3f);
+        EXPECT_EQ(m.iridescence_thickness_minimum, 100.0f);
+        EXPECT_EQ(m.iridescence_thickness_maximum, 400.0f);
         EXPECT_EQ(m.normal_scale, 1.0f);
     }
 }
@@ -173,8 +191,8 @@ Texture base_color_texture(const Scene& scene) {
 
 TEST(GltfTexture, EveryUseReadsItsOwn) {
     GltfBuilder builder = textured_triangle();
-    std::array<json, 10> info;
-    for (int i = 0; i < 10; ++i) {
+    std::array<json, 13> info;
+    for (int i = 0; i < int(info.size()); ++i) {
         info[i] = {{"index", builder.texture(test::one_texel_png({std::uint8_t(i), 0, 0, 255}))}};
     }
     info[2]["scale"] = 0.5;
@@ -193,20 +211,34 @@ TEST(GltfTexture, EveryUseReadsItsOwn) {
                       {"clearcoatTexture", info[7]},
                       {"clearcoatRoughnessFactor", 1},
                       {"clearcoatRoughnessTexture", info[8]},
-                      {"clearcoatNormalTexture", info[9]}}}}}});
+                      {"clearcoatNormalTexture", info[9]}}},
+                    {"KHR_materials_anisotropy", {{"anisotropyStrength", 1}, {"anisotropyTexture", info[10]}}},
+                    {"KHR_materials_iridescence",
+                     {{"iridescenceFactor", 1},
+                      {"iridescenceTexture", info[11]},
+                      {"iridescenceThicknessTexture", info[12]}}}}}});
     const Scene scene = load(builder);
     const Material& m = scene.materials.at(0);
-    const std::array<const std::optional<Texture>*, 10> textures = {
-        &m.base_color_texture,          &m.metallic_roughness_texture, &m.normal_texture,         &m.emissive_texture,
-        &m.transmission_texture,        &m.specular_texture,           &m.specular_color_texture, &m.clearcoat_texture,
-        &m.clearcoat_roughness_texture, &m.clearcoat_normal_texture};
+    const std::array<const std::optional<Texture>*, 13> textures = {&m.base_color_texture,
+                                                                    &m.metallic_roughness_texture,
+                                                                    &m.normal_texture,
+                                                                    &m.emissive_texture,
+                                                                    &m.transmission_texture,
+                                                                    &m.specular_texture,
+                                                                    &m.specular_color_texture,
+                                                                    &m.clearcoat_texture,
+                                                                    &m.clearcoat_roughness_texture,
+                                                                    &m.clearcoat_normal_texture,
+                                                                    &m.anisotropy_texture,
+                                                                    &m.iridescence_texture,
+                                                                    &m.iridescence_thickness_texture};
     for (std::size_t i = 0; i < textures.size(); ++i) {
         ASSERT_TRUE(*textures[i]) << "texture " << i;
         EXPECT_EQ(int(scene.images.at((*textures[i])->image).rgba.at(0)), int(i)) << "texture " << i;
     }
     EXPECT_EQ(m.normal_scale, 0.5f);
     EXPECT_EQ(m.clearcoat_normal_scale, -2.0f);
-    EXPECT_EQ(scene.images.size(), 10u);
+    EXPECT_EQ(scene.images.size(), 13u);
 }
 
 TEST(GltfTexture, WhatMultipliesZeroIsNotRead) {
@@ -223,7 +255,9 @@ TEST(GltfTexture, WhatMultipliesZeroIsNotRead) {
            {"KHR_materials_specular",
             {{"specularFactor", 0}, {"specularTexture", info}, {"specularColorTexture", info}}},
            {"KHR_materials_clearcoat",
-            {{"clearcoatTexture", info}, {"clearcoatRoughnessTexture", info}, {"clearcoatNormalTexture", info}}}}}});
+            {{"clearcoatTexture", info}, {"clearcoatRoughnessTexture", info}, {"clearcoatNormalTexture", info}}},
+           {"KHR_materials_anisotropy", {{"anisotropyTexture", info}}},
+           {"KHR_materials_iridescence", {{"iridescenceTexture", info}, {"iridescenceThicknessTexture", info}}}}}});
     const Scene scene = load(builder);
     EXPECT_TRUE(scene.images.empty());
     EXPECT_TRUE(scene.uv[0].empty());

@@ -346,7 +346,7 @@ TEST(Options, RefuseEveryBadLineWithOptionValueAndRange) {
           ",sppm"},
          {"none of", "cppm"}},
         {{"race", "s", "-o", "d", "--estimators", "cppm:gamma=1"}, {"--estimators", "cppm:gamma=1", "beta", "gamma"}},
-        {{"race", "s", "-o", "d", "--estimators", "cppm:photons=1"}, {"--estimators", "photons", "knn, alpha"}},
+        {{"race", "s", "-o", "d", "--estimators", "cppm:seed=1"}, {"--estimators", "seed", "knn, alpha"}},
         {{"race", "s", "-o", "d", "--estimators", "cppm:beta"}, {"--estimators", "cppm:beta", "PARAMETER=VALUE"}},
         {{"race", "s", "-o", "d", "--estimators", "cppm:beta=x"}, {"--beta", "'x'", "finite"}},
         {{"race", "s", "-o", "d", "--estimator", "cppm"}, {"--estimator"}},

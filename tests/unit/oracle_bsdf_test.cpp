@@ -1,11 +1,13 @@
 // The oracle's scattering function against what holds for any, and against its own limits.
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
@@ -376,6 +378,52 @@ TEST(OracleBsdf, CoatTakesItsShareOfTheBase) {
         below += (1.0 - fresnel_schlick(glm::dvec3(0.04), 1.0, std::sqrt((1.0 + cosine) / 2.0)).x) / steps;
     }
     expect_near(bsdf.directional_albedo(up), bsdf.base_color * below + 0.04, 1e-6, "coated Lambert");
+}
+
+TEST(OracleFilm, IsItsBaseWhereThereIsNone) {
+    // Without thickness, or of index 1, at normal incidence, where faces reflect by their indices alone.
+    for (const double f0 : {0.0, 0.04, 0.3, 0.9}) {
+        for (const double index : {1.0, 1.3, 2.5}) {
+            const glm::dvec3 thin = fresnel_film(glm::dvec3(f0), 1.0, index, 0.0, endless);
+            expect_near(thin, glm::dvec3(f0), 1e-12, fmt::format("f0 {}, index {}", f0, index));
+        }
+        expect_near(fresnel_film(glm::dvec3(f0), 1.0, 1.0, 300.0, endless), glm::dvec3(f0), 1e-12, "index 1");
+    }
+}
+
+TEST(OracleFilm, ThickFilmsReflectAsFacesThatDoNotInterfere) {
+    // R1 + (1 - R1)^2 R2 / (1 - R1 R2) of two faces.
+    const double outer = std::pow(0.5 / 2.5, 2), base = (1.0 + 0.5) / (1.0 - 0.5);
+    const double inner = std::pow((base - 1.5) / (base + 1.5), 2);
+    const double sum = outer + (1.0 - outer) * (1.0 - outer) * inner / (1.0 - outer * inner);
+    expect_near(fresnel_film(glm::dvec3(0.25), 1.0, 1.5, 3500.0), glm::dvec3(sum), 1e-4, "3.5 micrometres");
+}
+
+TEST(OracleFilm, QuarterWavesReflectNothingOfTheirColour) {
+    // Of index sqrt(n) over a base of index n and a quarter of a green wave thick: a blooming of lenses, magenta.
+    const glm::dvec3 f0(std::pow(0.7 / 2.7, 2));
+    const glm::dvec3 r = fresnel_film(f0, 1.0, std::sqrt(1.7), 550.0 / 4.0 / std::sqrt(1.7));
+    EXPECT_LT(r.g, 0.02 * f0.g);
+    EXPECT_GT(r.r, 2.0 * r.g);
+    EXPECT_GT(r.b, 2.0 * r.g);
+}
+
+TEST(OracleFilm, FewOrdersAreNearlyAll) {
+    const auto error = [](double f0, double least_cosine) {
+        double most = 0.0;
+        for (double cosine = least_cosine; cosine <= 1.0; cosine += 0.02) {
+            for (const double thickness : {0.0, 50.0, 100.0, 200.0, 400.0, 800.0}) {
+                const glm::dvec3 all = fresnel_film(glm::dvec3(f0), cosine, 1.3, thickness, endless);
+                const glm::dvec3 off = glm::abs(fresnel_film(glm::dvec3(f0), cosine, 1.3, thickness) - all);
+                most = std::max({most, off.x, off.y, off.z});
+            }
+        }
+        return most;
+    };
+    EXPECT_LT(error(0.04, 0.0), 1e-4);
+    EXPECT_LT(error(0.6, 0.3), 5e-3);
+    EXPECT_LT(error(0.95, 0.3), 5e-3);
+    EXPECT_LT(error(0.95, 0.0), 0.2) << "of metals at grazing angles";
 }
 
 TEST(OracleBsdf, TiltedCoatReflectsAboutItsOwnNormal) {

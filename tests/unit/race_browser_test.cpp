@@ -75,7 +75,7 @@ TEST_F(RaceInBrowser, DrawsTenEntrants) {
                                             "cppm-fold", "cppm-null", "ftest", "ftest-fold", "cppm:beta=1.5"};
     write(names);
     const std::string page = drawn("");
-    expect_plots(page, "mse", 10, 7);
+    expect_plots(page, "relmse_trimmed", 10, 7);
     EXPECT_NE(between(page, "<h1 id=\"heading\">", "</h1>").find("Race: script&gt; &amp; b.gltf"), std::string::npos);
     EXPECT_EQ(between(page, "<pre id=\"command\" tabindex=\"0\">", "</pre>"),
               "vkcppm race \"scene\" &lt;&amp;&gt; -o out");

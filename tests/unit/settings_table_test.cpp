@@ -179,14 +179,16 @@ TEST(SettingsTable, TheCommandLineTakesBackWhatARecordTells) {
 TEST(SettingsTable, EveryCommandTakesTheKindsThatItShould) {
     setting::for_each([&](const auto& row) {
         SCOPED_TRACE(row.name);
-        const bool common = row.kind == Kind::bound || row.kind == Kind::picture || row.kind == Kind::view;
+        const bool common =
+            row.kind == Kind::bound || row.kind == Kind::picture || row.kind == Kind::paths || row.kind == Kind::view;
         Words words = words_of(row.name, two_settings(row)[1]);
         EXPECT_EQ(is_taken({"s.gltf"}, words), row.kind != Kind::internal);
         EXPECT_EQ(is_taken({"race", "s.gltf", "-o", "d"}, words), common || row.kind == Kind::parameter);
         EXPECT_EQ(is_taken({"reference", "s.gltf", "-o", "r.exr"}, words), common);
         words.push_back("");
         const std::string entrant = std::string("cppm:") + row.name + "=" + words[1];
-        EXPECT_EQ(is_taken({"race", "s.gltf", "-o", "d", "--estimators", entrant}, {}), row.kind == Kind::parameter);
+        EXPECT_EQ(is_taken({"race", "s.gltf", "-o", "d", "--estimators", entrant}, {}),
+                  row.kind == Kind::parameter || row.kind == Kind::paths);
     });
 }
 

@@ -29,7 +29,7 @@ function estimate(value, text = digits, unit = '') {
 
 // ---- What is chosen
 
-const state = {metric: race.metrics[0].name, view: 'picture', crop: null, hidden: new Set()};
+const state = {metric: race.metric, view: 'picture', crop: null, hidden: new Set()};
 
 function readAddress() {
   const chosen = new URLSearchParams(location.hash.slice(1));
@@ -66,10 +66,10 @@ function drawHead() {
     race.seconds === null ? null : `${number(race.seconds)} s`,
     race.iterations === null ? null : plural(race.iterations, 'iteration'),
   ].filter(Boolean);
-  const settings = entrants[0].settings;
+  const paths = new Set(entrants.map((entrant) => entrant.settings.photons));
   at('facts').textContent = [
     `${race.width}×${race.height} pixels`,
-    `${plural(settings.photons, 'light path')} an iteration`,
+    paths.size === 1 ? `${plural([...paths][0], 'light path')} an iteration` : null,
     `${limits.join(' or ')} each with ${seeds === 1 ? `seed ${race.seeds[0]}` : `each of ${seeds} seeds`}`,
     race.device,
     race.interrupted ? 'interrupted' : null,
@@ -114,6 +114,18 @@ function drawVerdict(metric) {
     make('strong', {}, number(own.final.mean)),
     '.',
   );
+  // Entrants whose interval reaches that of the best.
+  const near = measured.filter(
+    (entrant) => entrant !== best && own.final.low !== null && entrant.metrics[metric.name].final.low <= own.final.high,
+  );
+  if (seeds === 1) {
+    verdict.append(' One seed cannot tell that from chance: --seeds 5 gives intervals.');
+  } else if (near.length > 0) {
+    const names = near.map((entrant) => entrant.name);
+    verdict.append(
+      ` Within the ${percent} % intervals ${plural(seeds, 'seed')} cannot tell it from ${names.join(', ')}.`,
+    );
+  }
   if (best === baseline || !own.equal_seconds.speedup) return;
   /** "1.5 times (95 %: 1.2 to 1.9) sooner", or later where the factor is below 1. */
   const times = ({mean, low, high}, more, less) => {

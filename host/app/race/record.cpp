@@ -118,8 +118,9 @@ Json race_json(const RaceOptions& options, const RaceInput& input, const RaceRes
     json["winner_reach"] = winner_reach;
     json["parameters"] = Json::array();
     setting::for_each([&](const auto& row) {
-        if (row.kind == setting::Kind::parameter) json["parameters"].push_back(json_name(row.name));
+        if (setting::is_of_entrant(row.kind)) json["parameters"].push_back(json_name(row.name));
     });
+    json["metric"] = default_metric().name;
     json["metrics"] = Json::array();
     for (const Metric& metric : metrics()) {
         json["metrics"].push_back({{"name", metric.name}, {"title", metric.title}});

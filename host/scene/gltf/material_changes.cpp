@@ -52,7 +52,8 @@ const std::vector<Member>& members() {
 
 /// What a member takes, in words: 0..1, or without a bound that is no more than that of floats.
 std::string range_of(const Member& member) {
-    const std::string range = member.low == FLT_MIN    ? "above 0"
+    const std::string range = member.low == -FLT_MAX   ? "any number"
+                              : member.low == FLT_MIN  ? "above 0"
                               : member.high == FLT_MAX ? fmt::format("{} or more", member.low)
                                                        : fmt::format("{}..{}", member.low, member.high);
     return member.channels == 1 ? range : fmt::format("R,G,B of {}", range);

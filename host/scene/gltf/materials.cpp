@@ -224,7 +224,10 @@ VertexNeeds vertex_needs(const Material& material) {
     for (const std::optional<Texture>* texture : textures) {
         if (*texture) needs.uv[(*texture)->uv_set] = true;
     }
-    needs.tangents = material.normal_texture || material.clearcoat_normal_texture;
+    const bool anisotropic = material.anisotropy > 0.0f;
+    needs.tangents = material.normal_texture || material.clearcoat_normal_texture || anisotropic;
+    // Which coordinates tangents follow from set_tangent of include/surface.glsl knows.
+    needs.frame = anisotropic && !material.normal_texture && !material.anisotropy_texture;
     return needs;
 }
 

@@ -21,7 +21,8 @@ std::vector<Material> read_materials(const GltfFile& file, const std::vector<boo
 /// What a material reads of a vertex beside position, normal and colour.
 struct VertexNeeds {
     std::array<bool, 2> uv{};
-    bool tangents = false;  // for a normal texture
+    bool tangents = false;  // for a normal texture or anisotropy
+    bool frame = false;     // tangents, else TEXCOORD_0, from which they follow: of anisotropy without a texture
 };
 VertexNeeds vertex_needs(const Material& material);
 

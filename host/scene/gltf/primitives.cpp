@@ -105,6 +105,14 @@ LocalPrimitive PrimitiveReader::read_new(const tinygltf::Primitive& source, cons
     for (std::size_t set = 0; set < 2; ++set) {
         if (needs.uv[set]) primitive.uv[set] = uv(source, set, vertices, object);
     }
+    if (needs.frame && !needs.uv[0]) {
+        if (source.attributes.contains("TEXCOORD_0")) {
+            primitive.uv[0] = uv(source, 0, vertices, object);
+        } else if (!source.attributes.contains("TANGENT")) {
+            warnings_.add("it has neither tangents nor texture coordinates, its material's anisotropy is not seen",
+                          object);
+        }
+    }
     primitive.colors = colors(source, vertices, object);
     // Without normals there are no tangents either (glTF 2.0, section 3.7.2.1).
     if (needs.tangents && primitive.normals) primitive.tangents = attribute<4>(source, "TANGENT", vertices, object);

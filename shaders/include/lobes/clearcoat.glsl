@@ -8,6 +8,12 @@ uint clearcoat_gathers(Bsdf b) {
 
 float clearcoat_width(Bsdf b) { return b.clearcoat_alpha; }
 
+float clearcoat_stretch(Bsdf b) { return 1.0; }
+
+Facets clearcoat_facets(Bsdf b, Surface surface) {
+    return facets_of(b.clearcoat_alpha, surface.clearcoat_normal, 1.0, surface.tangent);
+}
+
 vec3 clearcoat_normal(Surface surface) { return surface.clearcoat_normal; }
 
 float clearcoat_weight(Bsdf b, Surface surface, vec3 wo) { return clearcoat_fresnel(b, coat_cosine(surface, wo)); }
@@ -21,7 +27,7 @@ vec3 clearcoat_sample(Bsdf b, Surface surface, Facet facet, vec2 u, bool radianc
 float clearcoat_density(Bsdf b, Surface surface, Pair pair, float weight) {
     float density = 0.0;
     if (is_rough(b.clearcoat_alpha) && pair.reflects && dot(pair.wi, surface.clearcoat_normal) > 0.0) {
-        density = weight * reflection_pdf(b.clearcoat_alpha, surface.clearcoat_normal, pair.wo, pair.h);
+        density = weight * reflection_pdf(clearcoat_facets(b, surface), pair.wo, pair.h);
     }
     return density;
 }
@@ -32,7 +38,7 @@ vec3 clearcoat_evaluate(Bsdf b, Surface surface, Pair pair, uint part) {
     if (density != 0.0) {
         float wo_c = dot(pair.wo, surface.clearcoat_normal);
         float wi_c = dot(pair.wi, surface.clearcoat_normal);
-        float lobe = rough_lobe(part, b.clearcoat_alpha, density, wo_c, wi_c);
+        float lobe = rough_lobe(part, clearcoat_facets(b, surface), density, pair, wo_c, wi_c);
         // The flux of a photon counts by the base's normal; the coat has one of its own.
         float turn = pair.wi_n > 0.0 ? wi_c / pair.wi_n : 0.0;
         value = vec3(clearcoat_fresnel(b, min(1.0, dot(pair.wo, pair.h))) * lobe * turn);

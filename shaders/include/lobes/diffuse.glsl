@@ -6,6 +6,8 @@ uint diffuse_gathers(Bsdf b) { return largest(b.diffuse) > 0.0 ? HIT_DIFFUSE : H
 
 float diffuse_width(Bsdf b) { return WIDE; }
 
+float diffuse_stretch(Bsdf b) { return 1.0; }
+
 vec3 diffuse_normal(Surface surface) { return surface.normal; }
 
 // Coats as seen from above: h is far from n at grazing angles.

@@ -7,6 +7,8 @@ uint reflection_gathers(Bsdf b) { return is_rough(b.alpha) && b.glass + b.r90 > 
 
 float reflection_width(Bsdf b) { return b.alpha; }
 
+float reflection_stretch(Bsdf b) { return b.stretch; }
+
 vec3 reflection_normal(Surface surface) { return surface.normal; }
 
 float reflection_weight(Bsdf b, Surface surface, vec3 wo) {
@@ -23,7 +25,7 @@ vec3 reflection_sample(Bsdf b, Surface surface, Facet facet, vec2 u, bool radian
 float reflection_density(Bsdf b, Surface surface, Pair pair, float weight) {
     float density = 0.0;
     if (is_rough(b.alpha) && pair.reflects && pair.wi_n > 0.0) {
-        density = weight * reflection_pdf(b.alpha, surface.normal, pair.wo, pair.h);
+        density = weight * reflection_pdf(base_facets(b, surface), pair.wo, pair.h);
     }
     return density;
 }
@@ -33,7 +35,7 @@ vec3 reflection_evaluate(Bsdf b, Surface surface, Pair pair, uint part) {
     vec3 value = vec3(0.0);
     if (density != 0.0) {
         float wo_h = min(1.0, dot(pair.wo, pair.h));
-        float lobe = rough_lobe(part, b.alpha, density, pair.wo_n, pair.wi_n);
+        float lobe = rough_lobe(part, base_facets(b, surface), density, pair, pair.wo_n, pair.wi_n);
         value = facet_reflectance(b, wo_h) * (below_clearcoat(b, wo_h) * lobe);
     }
     return value;

@@ -7,6 +7,8 @@ uint transmission_gathers(Bsdf b) { return is_rough(b.alpha) && b.glass > 0.0 ? 
 
 float transmission_width(Bsdf b) { return b.alpha; }
 
+float transmission_stretch(Bsdf b) { return b.stretch; }
+
 vec3 transmission_normal(Surface surface) { return surface.normal; }
 
 // True of a thin wall that lets light go straight on, as if it met nothing (include/direct.glsl).
@@ -37,16 +39,16 @@ vec3 transmission_sample(Bsdf b, Surface surface, Facet facet, vec2 u, bool radi
         vec3 weight = wall_transmittance(b, facet.wo_n, facet.wo_h);
         if (facet.rough) {
             vec3 mirrored = reflect(direction, facet.h);
-            float wi_n = dot(mirrored, facet.n);
-            direction = normalize(mirrored - 2.0 * wi_n * facet.n);
+            float wi_n = dot(mirrored, facet.of.n);
+            direction = normalize(mirrored - 2.0 * wi_n * facet.of.n);
             if (wi_n <= 0.0 || dot(direction, surface.geometric) >= 0.0) return vec3(0.0);
-            density = reflection_pdf(facet.alpha, facet.n, wo, facet.h);
-            weight *= smith_masking(facet.alpha, facet.wo_n, wi_n);
+            density = reflection_pdf(facet.of, wo, facet.h);
+            weight *= smith_masking(facet.of, wo, facet.wo_n, direction, wi_n);
         }
         return weight;
     }
     vec3 weight = b.transmission * below_clearcoat(b, facet.wo_n);
-    if (b.eta == 1.0) facet = smooth_facet(facet.n, wo);  // no facet bends it
+    if (b.eta == 1.0) facet = smooth_facet(facet.of, wo);  // no facet bends it
     float cosine_t;
     float transmittance = facet_transmittance(b, facet.wo_h, cosine_t);
     if (cosine_t == 0.0) return vec3(0.0);  // total internal reflection at this facet
@@ -54,10 +56,10 @@ vec3 transmission_sample(Bsdf b, Surface surface, Facet facet, vec2 u, bool radi
     vec3 refracted = normalize(b.eta * direction + (b.eta * facet.wo_h - cosine_t) * facet.h);
     if (facet.rough) {
         direction = refracted;
-        float wi_n = -dot(direction, facet.n);
+        float wi_n = -dot(direction, facet.of.n);
         if (wi_n <= 0.0 || dot(direction, surface.geometric) >= 0.0) return vec3(0.0);
-        density = refraction_pdf(facet.alpha, facet.n, facet.wo_n, facet.h, b.eta, facet.wo_h, cosine_t);
-        return weight * smith_masking(facet.alpha, facet.wo_n, wi_n);
+        density = refraction_pdf(facet.of, wo, facet.wo_n, facet.h, b.eta, facet.wo_h, cosine_t);
+        return weight * smith_masking(facet.of, wo, facet.wo_n, direction, wi_n);
     }
     // Shading normals can bend a refracted ray back to its own side: it then goes on along the surface's far side.
     if (dot(refracted, surface.geometric) < 0.0) direction = refracted;
@@ -84,14 +86,14 @@ float refracting_density(vec3 h, Bsdf b, Surface surface, Pair pair) {
     float wo_h = dot(pair.wo, h);
     float wi_h = dot(pair.wi, h);
     if (b.eta == 1.0 || wo_h <= 0.0 || wi_h >= 0.0) return 0.0;
-    return refraction_pdf(b.alpha, surface.normal, pair.wo_n, h, b.eta, wo_h, -wi_h);
+    return refraction_pdf(base_facets(b, surface), pair.wo, pair.wo_n, h, b.eta, wo_h, -wi_h);
 }
 
 float transmission_density(Bsdf b, Surface surface, Pair pair, float weight) {
     float density = 0.0;
     if (transmission_passes(b, pair)) {
         if (b.thin) {
-            density = weight * reflection_pdf(b.alpha, surface.normal, pair.wo, mirroring_half(surface, pair));
+            density = weight * reflection_pdf(base_facets(b, surface), pair.wo, mirroring_half(surface, pair));
         } else {
             density = weight * refracting_density(refracting_half(b, surface, pair), b, surface, pair);
         }
@@ -105,15 +107,16 @@ vec3 transmission_evaluate(Bsdf b, Surface surface, Pair pair, uint part) {
         vec3 tint = b.transmission * below_clearcoat(b, min(1.0, pair.wo_n));
         if (b.thin) {
             vec3 h = mirroring_half(surface, pair);
-            float density = reflection_pdf(b.alpha, surface.normal, pair.wo, h);
-            float lobe = rough_lobe(part, b.alpha, density, pair.wo_n, pair.wi_n);
+            float density = reflection_pdf(base_facets(b, surface), pair.wo, h);
+            float lobe = rough_lobe(part, base_facets(b, surface), density, pair, pair.wo_n, pair.wi_n);
             value = tint * (facet_transmittance(b, min(1.0, dot(pair.wo, h))) * lobe);
         } else {
             vec3 h = refracting_half(b, surface, pair);
             float density = refracting_density(h, b, surface, pair);
             if (density > 0.0) {
                 // Radiance changes by the squared ratio of indices across the surface.
-                float lobe = b.eta * b.eta * rough_lobe(part, b.alpha, density, pair.wo_n, pair.wi_n);
+                Facets facets = base_facets(b, surface);
+                float lobe = b.eta * b.eta * rough_lobe(part, facets, density, pair, pair.wo_n, pair.wi_n);
                 value = tint * (facet_transmittance(b, min(1.0, dot(pair.wo, h))) * lobe);
             }
         }

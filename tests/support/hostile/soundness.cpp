@@ -72,12 +72,19 @@ std::string unsound_material(const Scene& scene, const Material& m) {
     for (const auto* texture :
          {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.emissive_texture,
           &m.transmission_texture, &m.specular_texture, &m.specular_color_texture, &m.clearcoat_texture,
-          &m.clearcoat_roughness_texture, &m.clearcoat_normal_texture}) {
+          &m.clearcoat_roughness_texture, &m.clearcoat_normal_texture, &m.anisotropy_texture, &m.iridescence_texture,
+          &m.iridescence_thickness_texture}) {
         if (!*texture) continue;
         if ((*texture)->image >= scene.images.size() || (*texture)->uv_set > 1) return "a texture";
     }
     if (!is_fraction({m.base_color, m.opacity})) return "the base colour";
     if (!is_fraction({m.metallic, m.roughness, m.transmission, m.clearcoat})) return "a factor";
+    if (!is_fraction({m.anisotropy, m.iridescence, 0.0f, 0.0f})) return "a factor";
+    if (!std::isfinite(m.anisotropy_rotation)) return "the rotation of the anisotropy";
+    if (!(m.iridescence_ior >= 1.0f && m.iridescence_ior <= 100.0f)) return "the index of the film";
+    for (const float thickness : {m.iridescence_thickness_minimum, m.iridescence_thickness_maximum}) {
+        if (!(thickness >= 0.0f && std::isfinite(thickness))) return "the thickness of the film";
+    }
     if (!is_radiance(m.emission)) return "the emission";
     if (!(m.ior == 0.0f || m.ior >= 1.0f)) return fmt::format("the ior {}", m.ior);
     return "";

@@ -187,6 +187,48 @@ const std::vector<Case>& material_cases() {
              s.materials[ball].specular = 1.0f;
              s.materials[ball].roughness = 0.4f;
          }},
+        {"anisotropy",
+         [](Scene& s, Settings&) {
+             const Texture turns = add_image(s, 4, 4, [](auto x, auto y) {
+                 const float angle = 1.5f * float(x) + 0.7f * float(y);
+                 return glm::vec4(0.5f + 0.5f * std::cos(angle), 0.5f + 0.5f * std::sin(angle), 0.9f, 1.0f);
+             });
+             s.materials[ball].anisotropy_texture = turns;
+             s.materials[floor_].anisotropy_rotation = 0.6f;
+             for (const auto i : {floor_, ball}) {
+                 s.materials[i].anisotropy = 0.8f;
+                 s.materials[i].roughness = 0.25f;
+                 s.materials[i].specular = 1.0f;
+             }
+             s.materials[ball].metallic = 1.0f;
+         }},
+        {"iridescence",
+         [](Scene& s, Settings&) {
+             s.materials[ball].iridescence_texture =
+                 add_image(s, 4, 1, [](auto x, auto) { return glm::vec4(float(x) / 3.0f, 1.0f, 1.0f, 1.0f); });
+             s.materials[floor_].iridescence_thickness_texture =
+                 add_image(s, 1, 4, [](auto, auto y) { return glm::vec4(1.0f, float(y) / 3.0f, 1.0f, 1.0f); });
+             for (const auto i : {floor_, ball}) {
+                 s.materials[i].iridescence = 1.0f;
+                 s.materials[i].roughness = 0.3f;
+                 s.materials[i].specular = 1.0f;
+             }
+             s.materials[ball].metallic = 1.0f;
+         }},
+        {"iridescence_glass",
+         [](Scene& s, Settings&) {
+             make_glass(s.materials[ball], 0.0f, 1.0f);
+             make_glass(s.materials[pane], 0.3f, 0.0f);
+             for (const auto i : {ball, pane}) s.materials[i].iridescence = 1.0f;
+             s.materials[pane].iridescence_ior = 1.9f;
+         }},
+        {"anisotropy_glass",
+         [](Scene& s, Settings&) {
+             add_image(s, 1, 1, [](auto, auto) { return glm::vec4(1.0f); });  // for the coordinates
+             make_glass(s.materials[ball], 0.2f, 1.0f);
+             make_glass(s.materials[pane], 0.3f, 0.0f);
+             for (const auto i : {ball, pane}) s.materials[i].anisotropy = 0.7f;
+         }},
         {"textured_lamp",
          [](Scene& s, Settings&) {
              s.materials[lamp].emissive_texture = add_image(s, 8, 8, [](auto x, auto y) {

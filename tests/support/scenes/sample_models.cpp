@@ -41,13 +41,16 @@ int add_texture(GltfBuilder& b) {
                                                                   0, 0, 255, 255, 200, 200, 200, 255}));
 }
 
-/// The square with a texture at `where` below its material, such as /pbrMetallicRoughness/baseColorTexture.
-GltfBuilder textured(const char* where, const json& info = json::object()) {
-    GltfBuilder b = square();
+/// With a texture at `where` below its material, such as /pbrMetallicRoughness/baseColorTexture.
+GltfBuilder with_texture(GltfBuilder b, const char* where, const json& info = json::object()) {
     json texture = {{"index", add_texture(b)}};
     texture.update(info);
     b.document["materials"][0][json::json_pointer(where)] = texture;
     return b;
+}
+
+GltfBuilder textured(const char* where, const json& info = json::object()) {
+    return with_texture(square(), where, info);
 }
 
 /// The square with a texture that has a WebP beside its PNG.
@@ -266,6 +269,15 @@ std::vector<SampleModel> sample_models() {
                  "/materials/0/emissiveFactor", {1, 0.5, 0.25}),
          2},
         {"clearcoat", square(with_extension("KHR_materials_clearcoat", {{"clearcoatFactor", 1}})), 2},
+        {"iridescence",
+         with_texture(square(with_extension("KHR_materials_iridescence", {{"iridescenceFactor", 1}})),
+                      "/extensions/KHR_materials_iridescence/iridescenceThicknessTexture"),
+         2},
+        {"anisotropy",
+         with_texture(square(with_extension("KHR_materials_anisotropy",
+                                            {{"anisotropyStrength", 0.8}, {"anisotropyRotation", 1}})),
+                      "/extensions/KHR_materials_anisotropy/anisotropyTexture"),
+         2},
         {"specular", square(with_extension("KHR_materials_specular", {{"specularColorFactor", {1, 0.5, 0.2}}})), 2},
         {"unlit", square(with_extension("KHR_materials_unlit", json::object())), 2},
         {"sheen",
