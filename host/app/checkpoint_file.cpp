@@ -148,27 +148,6 @@ Checkpoint read_header(Reader& header) {
     return checkpoint;
 }
 
-/// Throws Error(usage) with every name of which the two have other values.
-void require_same(const Identity& there, const Identity& asked, const fs::path& file) {
-    const auto value_in = [](const Identity& identity, const std::string& name) -> std::string {
-        const auto found = std::ranges::find(identity, name, &Identity::value_type::first);
-        return found == identity.end() ? "absent" : found->second;
-    };
-    std::vector<std::string> differences;
-    const auto look_at = [&](const std::string& name) {
-        const std::string a = value_in(there, name), b = value_in(asked, name);
-        if (a != b) differences.push_back(fmt::format("{}: {} in the checkpoint, {} asked", name, a, b));
-    };
-    for (const auto& [name, value] : asked) look_at(name);
-    for (const auto& [name, value] : there) {
-        if (value_in(asked, name) == "absent") look_at(name);
-    }
-    if (!differences.empty()) {
-        throw Error(ExitCode::usage,
-                    fmt::format("{} is of another render: {}", file.string(), fmt::join(differences, "; ")));
-    }
-}
-
 /// A checkpoint file, open and found whole.
 class OpenCheckpoint {
 public:
@@ -261,6 +240,26 @@ Identity identity_of(const SceneOptions& options, const Scene& scene, const Sett
     return identity;
 }
 
+void require_same(const Identity& there, const Identity& asked, const fs::path& file, const std::string& in) {
+    const auto value_in = [](const Identity& identity, const std::string& name) -> std::string {
+        const auto found = std::ranges::find(identity, name, &Identity::value_type::first);
+        return found == identity.end() ? "absent" : found->second;
+    };
+    std::vector<std::string> differences;
+    const auto look_at = [&](const std::string& name) {
+        const std::string a = value_in(there, name), b = value_in(asked, name);
+        if (a != b) differences.push_back(fmt::format("{}: {} in {}, {} asked", name, a, in, b));
+    };
+    for (const auto& [name, value] : asked) look_at(name);
+    for (const auto& [name, value] : there) {
+        if (value_in(asked, name) == "absent") look_at(name);
+    }
+    if (!differences.empty()) {
+        throw Error(ExitCode::usage,
+                    fmt::format("{} is of another render: {}", file.string(), fmt::join(differences, "; ")));
+    }
+}
+
 void write_checkpoint(const fs::path& file, const Identity& identity, const Checkpoint& checkpoint) {
     std::string header;
     Writer header_writer(header);
@@ -281,7 +280,7 @@ Checkpoint read_checkpoint(const fs::path& file, const Identity& identity, std::
     OpenCheckpoint open(file);
     const std::string bytes = open.header();
     Reader header(bytes, file);
-    require_same(read_identity(header), identity, file);
+    require_same(read_identity(header), identity, file, "the checkpoint");
     Checkpoint checkpoint = read_header(header);
     checkpoint.state = open.state(pixels);
     return checkpoint;

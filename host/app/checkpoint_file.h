@@ -25,6 +25,11 @@ std::uint64_t hash_of(const Image& image);
 /// `settings` must be resolved; reference: null where the render is not measured.
 Identity identity_of(const SceneOptions& options, const Scene& scene, const Settings& settings, const Image* reference);
 
+/// Throws Error(usage) with every name of which the two have other values. in: what `there` stands in, such as "the
+/// checkpoint".
+void require_same(const Identity& there, const Identity& asked, const std::filesystem::path& file,
+                  const std::string& in);
+
 /// Replaces `file` by the checkpoint: whole, or not at all (io/atomic_file.h). Throws Error(cannot_write).
 ///
 /// The file: "vkcppmck", then little-endian words of 64 bits: format, bytes of the header, bytes of the state; the

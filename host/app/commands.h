@@ -11,6 +11,22 @@ namespace vkcppm {
 /// was asked for and had something to say.
 void execute(const RenderOptions& options);
 
+/// Renders the pilot of a job that many machines share and writes its folder, or extends one. A job that is there and
+/// is the same is left as it is, another one is refused. After SIGINT or SIGTERM nothing is written:
+/// Error(interrupted).
+void execute(const PlanOptions& options);
+
+/// Renders the slices of a shard that are not there, or are damaged, and writes each as it is done. After SIGINT or
+/// SIGTERM the slice that was begun is lost: Error(interrupted).
+void execute(const ShardOptions& options);
+
+/// Adds up what there is of a job and writes the picture. Throws Error(no_input) where something is missing and none
+/// may be, Error(usage) where there is a slice of another job.
+void execute(const MergeOptions& options);
+
+/// Prints how far a job is.
+void execute(const StatusOptions& options);
+
 /// Races estimators and writes the folder: page, curves, settings, pictures. After SIGINT or SIGTERM the submission is
 /// finished and what there is is written. Throws Error(usage) where there is no reference for the scene.
 void execute(const RaceOptions& options);

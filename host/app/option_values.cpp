@@ -69,6 +69,16 @@ FrameRange parse_frames(const std::string& option, const std::string& text) {
     return frames;
 }
 
+Shard parse_shard(const std::string& option, const std::string& text) {
+    std::string_view rest = text;
+    Shard shard;
+    const bool has_number = take_number(rest, shard.number) && rest.starts_with('/');
+    if (has_number) rest.remove_prefix(1);
+    if (!has_number || !take_number(rest, shard.of) || !rest.empty() || shard.number < 1 || shard.number > shard.of)
+        refuse(option, text, "K/N, such as 2/5, K from 1 to N");
+    return shard;
+}
+
 std::string parse_name(const std::string& option, const std::string& text) {
     if (text.empty()) refuse(option, text, "a name");  // an unset variable of a shell must not mean the default
     return text;

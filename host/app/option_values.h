@@ -29,6 +29,11 @@ struct FrameRange {
     std::uint32_t first = 0, last = 0;  // first <= last
 };
 
+/// One of so many parts of a job.
+struct Shard {
+    std::uint32_t number = 1, of = 1;  // 1 <= number <= of
+};
+
 /// Throws Error(usage): that of `option` is not `wanted`.
 [[noreturn]] void refuse(const std::string& option, const std::string& text, const std::string& wanted);
 
@@ -38,6 +43,7 @@ double parse_real(const std::string& option, const std::string& text);
 double parse_factor(const std::string& option, const std::string& text);                   // 0 or more, within floats
 double parse_rate(const std::string& option, const std::string& text);                     // above 0, to 1e6
 FrameRange parse_frames(const std::string& option, const std::string& text);               // 0..47
+Shard parse_shard(const std::string& option, const std::string& text);                     // 2/5
 std::string parse_name(const std::string& option, const std::string& text);                // not empty
 std::optional<double> parse_exposure(const std::string& option, const std::string& text);  // stops; auto: absent
 ToneMap parse_tone_map(const std::string& option, const std::string& text);                // none, reinhard, aces, agx

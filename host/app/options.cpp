@@ -17,6 +17,7 @@
 #include "io/atomic_file.h"
 #include "render/estimators.h"
 #include "render/settings_rows.h"
+#include "render/slices.h"
 
 namespace vkcppm {
 namespace {
@@ -301,6 +302,81 @@ void finish(const CLI::App& app, const Words&, RenderOptions& options) {
     }
 }
 
+constexpr const char* job_footer = R"(Exit codes:
+  0 done   2 usage   65 bad scene or file   66 no such file   69 no usable Vulkan device   70 internal
+  71 out of device memory   73 cannot write   75 device lost   130 interrupted)";
+
+void add_job(CLI::App& app, std::filesystem::path& job) {
+    app.add_option("JOB", job, "Folder that vkcppm plan has made")->required()->type_name("DIR");
+}
+
+void declare(CLI::App& app, PlanOptions& options) {
+    app.footer(job_footer);
+    add_scene(app, options.scene);
+    app.get_option("SCENE")->required(false);
+    app.add_option("-o", options.job, "Folder of the job; made where there is none")->required()->type_name("JOB");
+    add_settings(app, options.settings, {Kind::method});
+    add_setting(app, options.settings, "iterations",
+                fmt::format("Iterations of all machines together (default: {})", options.settings.iterations));
+    add(app, "--pilot", "N", options.pilot, parse_whole,
+        fmt::format("Iterations that are rendered here and now, for all machines to go by; {} or more\n"
+                    "(default: a 32nd of all, {} or more)",
+                    least_pilot, usual_pilot));
+    add(app, "--slice", "N", options.slice, parse_whole,
+        "Iterations that are rendered and written as one (default: so that there are about 64 slices, or 4 for\n"
+        "each of --shards, of 4 iterations or more)");
+    add(app, "--shards", "N", options.shards, parse_whole,
+        "Machines that it is meant for: what is missing is told by shard. Any other number may be taken");
+    add(app, "--extend", "N", options.extend, parse_whole,
+        "Iterations that the job in this folder is to have more; scene and settings are the job's");
+    add_settings(app, options.settings, {Kind::picture, Kind::view});
+    add_settings(app, options.settings, {Kind::parameter});
+    add_settings(app, options.settings, {Kind::channels});
+    add_device(app, options.device);
+    app.add_flag("--quiet", options.quiet, "No progress, only warnings and errors");
+}
+
+void finish(const CLI::App& app, const Words& words, PlanOptions& options) {
+    options.words = words;
+    if (!options.extend) {
+        if (app.count("SCENE") == 0) throw Error(ExitCode::usage, "SCENE is required (see vkcppm plan --help)");
+        return;
+    }
+    const Words with{"-o", "--extend", "--quiet"};
+    for (const CLI::Option* option : app.get_options()) {
+        if (option->count() > 0 && std::ranges::find(with, option->get_name()) == with.end())
+            throw Error(ExitCode::usage, fmt::format("--extend excludes {}: it is the job's", option->get_name()));
+    }
+}
+
+void declare(CLI::App& app, ShardOptions& options) {
+    app.footer(job_footer);
+    add_job(app, options.job);
+    add(app, "--shard", "K/N", options.shard, parse_shard,
+        "Slices K, K + N, K + 2 N, ...; those that are there are left as they are")
+        ->required();
+    add_device(app, options.device);
+    app.add_flag("--quiet", options.quiet, "No progress, only warnings and errors");
+}
+
+void declare(CLI::App& app, MergeOptions& options) {
+    app.footer(job_footer);
+    add_job(app, options.job);
+    app.add_option("-o", options.output, "The picture, linear float EXR")->required()->type_name("OUT.exr");
+    app.add_option("--png", options.png, "The picture for the eye, sRGB, as well")->type_name("FILE.png");
+    for (CLI::Option* option : add_display(app, options.display, "the PNG")) option->needs("--png");
+    add(app, "--png-depth", "8|16", options.png_depth, parse_png_depth, "Bits of a number of the PNG (default: 8)")
+        ->needs("--png");
+    app.add_flag("--complete", options.complete,
+                 "Nothing is written unless every slice is there: else the picture is that of those that are");
+    app.add_flag("--quiet", options.quiet, "Only warnings and errors");
+}
+
+void declare(CLI::App& app, StatusOptions& options) {
+    add_job(app, options.job);
+    app.add_flag("--json", options.json, "Print JSON");
+}
+
 void declare(CLI::App& app, RaceOptions& options) {
     app.footer(footer);
     add_scene(app, options.scene);
@@ -505,8 +581,16 @@ constexpr std::array commands{
     command<RenderOptions>("",
                            "Renders a glTF scene by progressive photon mapping on a Vulkan device.\n"
                            "Other commands: vkcppm race, vkcppm reference, vkcppm compare, vkcppm check, vkcppm info,\n"
-                           "vkcppm devices, vkcppm doctor; each has its own --help.\n"
+                           "vkcppm plan, vkcppm render-shard, vkcppm merge, vkcppm status, vkcppm devices,\n"
+                           "vkcppm doctor; each has its own --help.\n"
                            "A scene of such a name is given as ./compare."),
+    command<PlanOptions>(
+        "plan",
+        "Begins a render that many machines share: renders the first iterations, and writes a folder by which\n"
+        "vkcppm render-shard renders the others, in any number of shards, and vkcppm merge adds them up."),
+    command<ShardOptions>("render-shard", "Renders a machine's share of a job, and goes on where it was ended."),
+    command<MergeOptions>("merge", "Adds up what the machines of a job have rendered to its picture."),
+    command<StatusOptions>("status", "Tells how far a job is."),
     command<RaceOptions>(
         "race",
         "Renders a scene by several estimators side by side and compares their errors: against iterations,\n"
@@ -535,6 +619,14 @@ Options parse_options(int argc, const char* const* argv) {
     if (named == commands.end()) return first->read(*first, words);
     words.erase(words.begin());
     return named->read(*named, words);
+}
+
+PlanOptions parse_plan(const std::vector<std::string>& words) {
+    std::vector<const char*> argv{"vkcppm", "plan"};
+    for (const std::string& word : words) argv.push_back(word.c_str());
+    Options options = parse_options(int(argv.size()), argv.data());
+    if (auto* plan = std::get_if<PlanOptions>(&options)) return *plan;
+    throw Error(ExitCode::usage, "the words of the job are no plan");
 }
 
 std::vector<CommandText> command_texts() {

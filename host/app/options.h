@@ -111,6 +111,46 @@ struct RaceOptions {
     std::string command;  // this command line, to be given to a shell again
 };
 
+/// vkcppm plan SCENE
+struct PlanOptions {
+    SceneOptions scene;
+    Settings settings;                    // ranges unchecked: resolve_settings does that
+    std::filesystem::path job;            // folder
+    std::optional<std::uint32_t> pilot;   // iterations; absent: by those in all
+    std::optional<std::uint32_t> slice;   // iterations; absent: by those in all and by the shards
+    std::optional<std::uint32_t> shards;  // that it is meant for
+    std::optional<std::uint32_t> extend;  // iterations that a job is to have more; then without a scene
+    Device::Options device;
+    bool quiet = false;
+    std::vector<std::string> words;  // those of this command line behind the command
+    std::string folder;              // where files that are not absolute are looked for, as seen from the job
+};
+
+/// vkcppm render-shard JOB
+struct ShardOptions {
+    std::filesystem::path job;
+    Shard shard;
+    Device::Options device;
+    bool quiet = false;
+};
+
+/// vkcppm merge JOB
+struct MergeOptions {
+    std::filesystem::path job;
+    std::filesystem::path output;  // EXR
+    std::optional<std::filesystem::path> png;
+    DisplayOptions display;  // for the PNG
+    PngDepth png_depth = PngDepth::eight;
+    bool complete = false;  // nothing may be missing
+    bool quiet = false;
+};
+
+/// vkcppm status JOB
+struct StatusOptions {
+    std::filesystem::path job;
+    bool json = false;
+};
+
 /// vkcppm info SCENE
 struct InfoOptions {
     SceneOptions scene;
@@ -135,20 +175,25 @@ struct TextOptions {
     std::string text;
 };
 
-using Options = std::variant<RenderOptions, RaceOptions, ReferenceOptions, CompareOptions, CheckOptions, InfoOptions,
-                             DevicesOptions, DoctorOptions, TextOptions>;
+using Options =
+    std::variant<RenderOptions, PlanOptions, ShardOptions, MergeOptions, StatusOptions, RaceOptions, ReferenceOptions,
+                 CompareOptions, CheckOptions, InfoOptions, DevicesOptions, DoctorOptions, TextOptions>;
 
 /// CheckSettings::level of a check without bounds where none is given.
 inline constexpr double usual_level = 0.01;
 
 /// Iterations where --time is given and --iterations is not.
 inline constexpr std::uint32_t unbounded_iterations = max_iterations;
+inline constexpr std::uint32_t usual_pilot = 16;  // iterations of a job's, at least, where --pilot is not given
 inline constexpr std::uint32_t unbounded_samples = 1u << 24;  // of ReferenceSettings, likewise
 
-/// Reads the command line; argv[0] is the program. The first word chooses the command where it is race, reference,
-/// compare, check, info, devices or doctor, and is the scene otherwise. Throws Error(usage) with the option, its value
+/// Reads the command line; argv[0] is the program. The first word chooses the command where it is that of one
+/// (command_texts()), and is the scene otherwise. Throws Error(usage) with the option, its value
 /// and what it takes.
 Options parse_options(int argc, const char* const* argv);
+
+/// Those of a plan again, from its words.
+PlanOptions parse_plan(const std::vector<std::string>& words);
 
 /// What --help says of an option, in parts.
 struct OptionText {

@@ -120,6 +120,16 @@ Json estimate_json(const ErrorEstimate& estimate) {
     return json;
 }
 
+std::string estimate_line(const ErrorEstimate& estimate) {
+    const ExpectedRelmse& relmse = estimate.relmse_trimmed;
+    constexpr double confidence = 0.9;
+    return fmt::format(
+        "error of its own estimate: relmse_trimmed {:.3g} ({:.3g} noise, {:.3g} bias), at most {:.3g} "
+        "by {:g} %; relmse {:.3g}; median noise of a pixel {:.2g} %",
+        relmse.error.value, relmse.noise, relmse.bias, upper_bound(relmse.error, confidence), 100.0 * confidence,
+        estimate.relmse.error.value, 100.0 * estimate.noise.value);
+}
+
 bool reached(const StopAt& stop_at, const Rendering& rendering) {
     assert(!rendering.curve.empty());
     return stop_at.metric->of(rendering.curve.back().error) <= stop_at.value;

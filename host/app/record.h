@@ -33,6 +33,9 @@ nlohmann::ordered_json warnings_json(const Scene& scene, const std::vector<std::
 /// ..._noise and ..._bias; rare_light.
 nlohmann::ordered_json estimate_json(const ErrorEstimate& estimate);
 
+/// The same in a line, for people.
+std::string estimate_line(const ErrorEstimate& estimate);
+
 /// What a run did: device, driver, totals, passes [{name, calls, device_seconds}] and, of a render, memory [{of, count,
 /// bytes_each, bytes}].
 nlohmann::ordered_json report_json(const Report& report);

@@ -63,17 +63,6 @@ void print_stop(const StopAt& stop_at, const Rendering& rendering, bool quiet) {
               fmt::format("--stop-at {:.6g}", stop_at.value), quiet);
 }
 
-/// Says what the render thinks of its own error.
-void print_estimate(const ErrorEstimate& estimate) {
-    const ExpectedRelmse& relmse = estimate.relmse_trimmed;
-    constexpr double confidence = 0.9;
-    print_message(
-        fmt::format("error of its own estimate: relmse_trimmed {:.3g} ({:.3g} noise, {:.3g} bias), at most {:.3g} by "
-                    "{:g} %; relmse {:.3g}; median noise of a pixel {:.2g} %",
-                    relmse.error.value, relmse.noise, relmse.bias, upper_bound(relmse.error, confidence),
-                    100.0 * confidence, estimate.relmse.error.value, 100.0 * estimate.noise.value));
-}
-
 /// Says whether the error to aim at was met.
 void print_target(const Target& target, const Rendering& rendering, bool quiet) {
     const std::string wanted = fmt::format("--target {}={:g}", target.measure->name, target.value);
@@ -231,7 +220,7 @@ void tell_and_write(const RenderOptions& options, const Scene& scene, const Rend
         print_result(fmt::format("picture {}\n", hash_text(hash_of(rendering.image))));
     }
     if (options.stop_at) print_stop(*options.stop_at, rendering, options.quiet);
-    if (rendering.estimate && !options.quiet) print_estimate(*rendering.estimate);
+    if (rendering.estimate && !options.quiet) print_message(estimate_line(*rendering.estimate));
     if (options.target) print_target(*options.target, rendering, options.quiet);
     write_outputs(options, scene, rendering);
     if (options.verbose) print_table(rendering.report);

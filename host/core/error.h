@@ -18,6 +18,7 @@ enum class ExitCode : int {
     out_of_device_memory = 71,
     cannot_write = 73,
     device_lost = 75,
+    interrupted = 130,
 };
 
 /// Bad input or a missing resource. `what()` is one line that names the object, the value, the limit and the file.

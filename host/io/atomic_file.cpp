@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <random>
 #include <string>
 #include <utility>
 
@@ -50,7 +51,8 @@ void write_all(int descriptor, std::string_view bytes, const fs::path& file) {
 class Part {
 public:
     explicit Part(const fs::path& file) : file_(file), target_(replaceable(file)), part_(target_) {
-        part_ += fmt::format(".{}.part", ::getpid());
+        // By process and by chance: containers that share a folder may each be process 1.
+        part_ += fmt::format(".{}.{:08x}.part", ::getpid(), std::random_device()());
         descriptor_ = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
         if (descriptor_ < 0) fail_with_errno(file_);
     }

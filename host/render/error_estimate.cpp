@@ -78,10 +78,7 @@ constexpr std::size_t estimates = 1 + groups;  // from all groups, and without e
 /// The picture's groups, read pixel by pixel.
 class Reader {
 public:
-    explicit Reader(const ErrorSums& sums) : sums_(sums) {
-        const auto sizes = group_sizes(sums.iterations);
-        std::ranges::copy(sizes, sizes_.begin());
-    }
+    explicit Reader(const ErrorSums& sums) : sums_(sums) { std::ranges::copy(sums.sizes, sizes_.begin()); }
 
     Groups groups_of(std::size_t pixel) const { return Groups(read(pixel), sizes_); }
 
@@ -99,7 +96,7 @@ public:
     glm::dvec4 mean(std::size_t pixel) const {
         glm::dvec4 sum(0.0);
         for (const auto& group : sums_.of_group) sum += glm::dvec4(group[pixel]);
-        return sum / double(sums_.iterations);
+        return sum / double(sums_.iterations());
     }
 
     /// Calls visit(pixel) with those of a square about one, itself included.
@@ -251,7 +248,7 @@ Expected median_noise(const std::vector<PixelError>& errors, const std::array<do
 
 /// The same of means over blocks: a picture whose pixels are the blocks. Without the bias.
 ErrorSums in_blocks(const ErrorSums& sums, std::uint32_t side) {
-    ErrorSums blocks{blocks_of(sums.extent, side), sums.iterations, {}};
+    ErrorSums blocks{blocks_of(sums.extent, side), sums.sizes, {}};
     for (std::size_t k = 0; k < groups; ++k) {
         const std::vector<glm::dvec3> of_pixels(sums.of_group[k].begin(), sums.of_group[k].end());
         for (const glm::dvec3& mean : block_means(sums.extent, side, of_pixels)) {
@@ -293,9 +290,24 @@ std::array<std::uint32_t, ERROR_GROUPS> group_sizes(std::uint32_t iterations) {
     return sizes;
 }
 
+std::uint32_t ErrorSums::iterations() const { return std::accumulate(sizes.begin(), sizes.end(), 0u); }
+
+bool can_estimate(const ErrorSums& sums) {
+    return std::ranges::all_of(sums.sizes, [](std::uint32_t size) { return size >= least_estimated / groups; });
+}
+
 double upper_bound(const Expected& expected, double confidence) {
     const double bar = student(confidence) * expected.standard_error;
     return expected.value > 0.0 ? expected.value * std::exp(bar / expected.value) : bar;
+}
+
+std::optional<std::string> warning_of(const ErrorEstimate& estimate) {
+    constexpr double much = 0.01;  // what is found once is missed as often
+    if (estimate.rare <= much) return std::nullopt;
+    return fmt::format(
+        "{:.2g} % of the picture's light is in pixels that have found most of theirs in one of {} parts of the "
+        "iterations: other pixels may have missed such light, which no estimate of the error knows",
+        100.0 * estimate.rare, groups);
 }
 
 std::span<const EstimatedMeasure> estimated_measures() {
@@ -322,7 +334,7 @@ bool is_look(std::uint32_t iterations) {
 }
 
 ErrorEstimate estimate_error(const ErrorSums& sums) {
-    assert(sums.iterations >= least_estimated);
+    assert(can_estimate(sums));
     const Reader reader(sums);
     std::vector<PixelError> errors(sums.extent.pixels());
     tbb::parallel_for(std::size_t(0), errors.size(), [&](std::size_t i) { errors[i] = error_of(reader, i); });
@@ -335,7 +347,7 @@ ErrorEstimate estimate_error(const ErrorSums& sums) {
     const std::span<const std::uint32_t> trimmed = std::span(order).first(kept);
     const std::array<double, estimates> fall = fall_of(errors, trimmed);
     ErrorEstimate estimate;
-    estimate.iterations = sums.iterations;
+    estimate.iterations = sums.iterations();
     estimate.relmse = relmse_of(errors, order, fall);
     estimate.relmse_trimmed = relmse_of(errors, trimmed, fall);
     estimate.noise = median_noise(errors, fall);

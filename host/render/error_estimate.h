@@ -48,13 +48,18 @@ std::array<std::uint32_t, ERROR_GROUPS> group_sizes(std::uint32_t iterations);
 /// What an integrator has kept.
 struct ErrorSums {
     Extent extent;
-    std::uint32_t iterations = 0;
+    std::array<std::uint32_t, ERROR_GROUPS> sizes{};  // iterations of each group
     /// [groups][P] sums over the iterations of a group: radiance, and the bias B of its luminance.
     std::array<std::vector<glm::vec4>, ERROR_GROUPS> of_group;
+
+    std::uint32_t iterations() const;
 };
 
 /// Iterations before which nothing is estimated: two a group.
 inline constexpr std::uint32_t least_estimated = 2 * ERROR_GROUPS;
+
+/// True where every group has as many as that.
+bool can_estimate(const ErrorSums& sums);
 
 /// An expected error and the standard error of that.
 struct Expected {
@@ -83,6 +88,9 @@ struct ErrorEstimate {
     double rare = 0.0;
 };
 
+/// A line where light is found so rarely that no estimate of the error is to be trusted.
+std::optional<std::string> warning_of(const ErrorEstimate& estimate);
+
 /// One that a render can end at.
 struct EstimatedMeasure {
     std::string_view name;
@@ -105,7 +113,7 @@ bool is_met(const Target& target, const std::optional<ErrorEstimate>& estimate);
 /// lest one of them meet the target by chance.
 bool is_look(std::uint32_t iterations);
 
-/// Asserts that there are `least_estimated` iterations or more. O(P groups).
+/// Asserts can_estimate(). O(P groups).
 ErrorEstimate estimate_error(const ErrorSums& sums);
 
 /// Channels [P] of a picture, W m^-2 sr^-1:

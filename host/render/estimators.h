@@ -11,10 +11,11 @@
 
 namespace vkcppm {
 
-/// What an estimator keeps of a pixel besides PixelState.
+/// What an estimator keeps of a pixel besides PixelState, and how its radii go on after a pilot.
 // clang-format off
 #define ENUMERATOR(name) name,
 enum class Statistic { STATISTICS(ENUMERATOR) };
+enum class Later { LATER(ENUMERATOR) };
 #undef ENUMERATOR
 // clang-format on
 
@@ -23,13 +24,14 @@ struct EstimatorRow {
     Statistic statistic;
     bool folded;               // opposite sectors are one cell
     std::uint32_t fitted;      // parameters of the density that are fitted before a chi-squared test
+    Later later;               // how radii go on after a pilot
     std::string_view summary;  // one line for --help and the README
 };
 
 /// All of them, the default one first.
 // clang-format off
-#define ESTIMATOR_ROW(name, statistic, folded, fitted, summary) \
-    EstimatorRow{name, Statistic::statistic, folded, fitted, summary},
+#define ESTIMATOR_ROW(name, statistic, folded, fitted, later, summary) \
+    EstimatorRow{name, Statistic::statistic, folded, fitted, Later::later, summary},
 inline constexpr std::array estimator_rows = {ESTIMATORS(ESTIMATOR_ROW)};
 #undef ESTIMATOR_ROW
 // clang-format on

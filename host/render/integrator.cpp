@@ -25,9 +25,6 @@ constexpr double footprint_cap = 64.0;               // footprints of the pixel
 constexpr std::uint64_t most_sorted_a_lane = 32768;  // well below the loop trips of every driver
 constexpr std::uint32_t plan_interval = 16;          // iterations between plans of the grid, after the first few
 
-/// True where the grid is planned before iteration i: 0, the powers of two, multiples of plan_interval.
-bool plans_grid(std::uint32_t i) { return (i & (i - 1)) == 0 || i % plan_interval == 0; }
-
 void set_test(gpu::Params& params, const EstimatorRow& estimator, const Settings& settings) {
     const std::vector<float> thresholds =
         chi_squared_thresholds(estimator, settings.rings, settings.sectors, settings.significance);
@@ -187,6 +184,13 @@ void Integrator::add_levels(std::uint32_t levels) {
     allocate_sorted();
     specialization_[SPEC_LEVELS] = levels;
     compile({KernelId::knn, KernelId::gather});
+}
+
+/// True where the grid is planned before iteration i: 0, the powers of two, multiples of plan_interval, counted from
+/// where a slice begins, with the grid that was there.
+bool Integrator::plans_grid(std::uint32_t i) const {
+    const std::uint32_t n = i - first_;
+    return (n != 0 || first_ == 0) && ((n & (n - 1)) == 0 || n % plan_interval == 0);
 }
 
 // The algorithm box: every line is one pass over its buffers, each after the one before it.
@@ -412,10 +416,37 @@ template <typename T> std::vector<T> Integrator::of_pixels(Binding binding) cons
     return all;
 }
 
+/// The same way back.
+template <typename T> void Integrator::set_pixels(Binding binding, std::span<const T> values) {
+    for (std::uint32_t band = 0; band < bands_.count(); ++band) {
+        buffers_.at(binding, band).upload(values.subspan(bands_.first(band), bands_.size(band)));
+    }
+}
+
+void Integrator::begin_slice(std::uint32_t first, std::span<const gpu::PixelState> states) {
+    assert(states.size() == bands_.pixels);
+    set_pixels(Binding::pixels, states);
+    set_pixels(Binding::film, std::span<const gpu::Film>(std::vector<gpu::Film>(bands_.pixels)));
+    if (counts_.aovs) set_pixels(Binding::aovs, std::span<const gpu::Aovs>(std::vector<gpu::Aovs>(bands_.pixels)));
+    if (counts_.errors) {
+        const std::vector<glm::vec4> nothing(bands_.each * ERROR_GROUPS, glm::vec4(0.0f));
+        for (std::uint32_t band = 0; band < bands_.count(); ++band) buffers_.at(Binding::errors, band).upload(nothing);
+    }
+    auto status = buffer(Binding::status).download_value<gpu::Status>();
+    status.completed = first;
+    buffer(Binding::status).upload_value(status);
+    params_.keeps_radii = 1;
+    buffer(Binding::params).upload_value(params_);
+    first_ = completed_ = first;
+    rays_ = stored_ = invalid_ = 0;
+}
+
+std::vector<gpu::PixelState> Integrator::pixel_states() const { return of_pixels<gpu::PixelState>(Binding::pixels); }
+
 std::vector<float> Integrator::radii() const {
     std::vector<float> radii;
     radii.reserve(bands_.pixels);
-    for (const gpu::PixelState& state : of_pixels<gpu::PixelState>(Binding::pixels)) {
+    for (const gpu::PixelState& state : pixel_states()) {
         radii.push_back(float(std::sqrt(double(state.radius2)) / scale_));
     }
     return radii;
@@ -440,58 +471,57 @@ double Integrator::disc_width() const {
     return *middle;
 }
 
+/// Without errors.
+IterationSums Integrator::surface_sums() const {
+    IterationSums sums{{params_.width, params_.height}, completed_ - first_, {}, {}, {}};
+    const auto both = [](const auto& sum, const auto& low) { return glm::dvec3(sum) + glm::dvec3(low); };
+    sums.film.reserve(bands_.pixels);
+    for (const gpu::Film& film : of_pixels<gpu::Film>(Binding::film)) sums.film.push_back(both(film.sum, film.low));
+    if (!counts_.aovs) return sums;
+    const auto states = pixel_states();
+    const auto aovs = of_pixels<gpu::Aovs>(Binding::aovs);
+    sums.surfaces.resize(bands_.pixels);
+    for (std::uint64_t i = 0; i < bands_.pixels; ++i) {
+        SurfaceSums& sum = sums.surfaces[i];
+        sum.albedo = both(aovs[i].albedo, aovs[i].albedo_low);
+        sum.normal = both(aovs[i].normal, aovs[i].normal_low);
+        sum.depth = double(aovs[i].depth) + double(aovs[i].depth_low);
+        sum.hits = aovs[i].hits;
+        for (std::uint32_t l = 0; l < LAYERS; ++l) sum.layer[l] = both(aovs[i].layer[l], aovs[i].layer_low[l]);
+        sum.seen = states[i].seen;
+        sum.photons = states[i].photons;
+        sum.radius2 = states[i].radius2;
+        sum.batch = states[i].batch;
+        sum.rejections = float(states[i].rejections);
+        sum.statistic = states[i].statistic;
+    }
+    return sums;
+}
+
 std::map<std::string, std::vector<float>> Integrator::aovs() const {
-    const auto states = of_pixels<gpu::PixelState>(Binding::pixels);
-    const auto sums = of_pixels<gpu::Aovs>(Binding::aovs);
-    std::map<std::string, std::vector<float>> channels;
-    const auto add = [&](const std::string& name, const auto& value) {
-        std::vector<float>& channel = channels[name];
-        for (std::uint64_t i = 0; i < bands_.pixels; ++i) channel.push_back(float(value(states[i], sums[i])));
-    };
-    using State = const gpu::PixelState&;
-    using Sums = const gpu::Aovs&;
-    channels["ppm.radius"] = radii();
-    add("ppm.photons", [](State s, Sums) { return s.photons; });
-    add("ppm.batch", [](State s, Sums) { return s.batch; });
-    add("ppm.rejections", [](State s, Sums) { return s.rejections; });
-    add("ppm.statistic", [](State s, Sums) { return s.statistic; });
-    add("ppm.iterations", [](State s, Sums) { return s.seen; });
-    const auto mean = [](float sum, float low, Sums a) {
-        return a.hits > 0 ? (double(sum) + double(low)) / double(a.hits) : 0.0;
-    };
-    add("Z", [&](State, Sums a) { return mean(a.depth, a.depth_low, a) / scale_; });
-    for (int c = 0; c < 3; ++c) {
-        add(std::string("Albedo.") + "RGB"[c], [&](State, Sums a) { return mean(a.albedo[c], a.albedo_low[c], a); });
-        add(std::string("N.") + "XYZ"[c], [&](State, Sums a) { return mean(a.normal[c], a.normal_low[c], a); });
-    }
-    const double iterations = std::max(1u, completed_);
-    add("A", [&](State, Sums a) { return std::min(1.0, a.hits / iterations); });
-    const auto films = of_pixels<gpu::Film>(Binding::film);
-    for (int c = 0; c < 3; ++c) {
-        const auto layer = [&](std::uint64_t i, std::uint32_t l) {
-            return (double(sums[i].layer[l][c]) + double(sums[i].layer_low[l][c])) / iterations;
-        };
-        for (std::uint64_t i = 0; i < bands_.pixels; ++i) {
-            const double all = (double(films[i].sum[c]) + double(films[i].low[c])) / iterations;
-            const double direct = layer(i, LAYER_DIRECT), caustic = layer(i, LAYER_CAUSTIC);
-            channels[std::string("direct.") + "RGB"[c]].push_back(float(direct));
-            channels[std::string("caustic.") + "RGB"[c]].push_back(float(caustic));
-            channels[std::string("rest.") + "RGB"[c]].push_back(float(all - direct - caustic));
-        }
-    }
-    return channels;
+    assert(counts_.aovs);
+    return surface_channels(surface_sums(), scale_);
 }
 
 ErrorSums Integrator::error_sums() const {
     assert(counts_.errors);
-    ErrorSums sums{{params_.width, params_.height}, completed_, {}};
+    ErrorSums sums{{params_.width, params_.height}, group_sizes(completed_), {}};
+    const auto before = group_sizes(first_);
     for (std::uint32_t group = 0; group < ERROR_GROUPS; ++group) {
+        sums.sizes[group] -= before[group];
+        if (sums.sizes[group] == 0) continue;
         for (std::uint32_t band = 0; band < bands_.count(); ++band) {
             const std::uint64_t bytes = bands_.size(band) * sizeof(glm::vec4);
             const auto part = buffers_.at(Binding::errors, band).download<glm::vec4>(bands_.size(band), group * bytes);
             sums.of_group[group].insert(sums.of_group[group].end(), part.begin(), part.end());
         }
     }
+    return sums;
+}
+
+IterationSums Integrator::sums() const {
+    IterationSums sums = surface_sums();
+    if (counts_.errors) sums.errors = error_sums();
     return sums;
 }
 
@@ -544,8 +574,8 @@ void Integrator::fill(Report& report) const {
         const KernelChoice& choice = kernel.choice;
         if (choice.forms().size() > 1) pass.form = choice.decided() ? text_of(*choice.chosen()) : "being measured";
     }
-    report.iterations = completed_;
-    report.emitted_paths = std::uint64_t(completed_) * params_.photons;
+    report.iterations = completed_ - first_;
+    report.emitted_paths = std::uint64_t(report.iterations) * params_.photons;
     report.stored_photons = stored_;
     report.rays = rays_;
     report.invalid = invalid_;

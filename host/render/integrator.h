@@ -20,6 +20,7 @@
 #include "render/report.h"
 #include "render/scene_on_device.h"
 #include "render/settings.h"
+#include "render/sums.h"
 #include "vk/buffer.h"
 #include "vk/device.h"
 #include "vk/kernel.h"
@@ -57,6 +58,11 @@ public:
     /// Scene, camera and settings must be those of then. Throws Error(bad_scene) where `state` cannot be theirs.
     void restore(const Report& report, std::span<const std::byte> state);
 
+    /// Goes on with iteration `first`, after nothing: film, channels and errors begin anew, and pixels take these
+    /// states [P], whose radii stay where photons gave them, whatever the estimator's rule. Grid and statistics are
+    /// those that stand there. Reports count from here on.
+    void begin_slice(std::uint32_t first, std::span<const gpu::PixelState> states);
+
     std::uint32_t completed() const { return completed_; }
 
     /// Mean over the completed iterations.
@@ -67,6 +73,16 @@ public:
 
     /// What errors are estimated from. Asserts that the settings asked for them.
     ErrorSums error_sums() const;
+
+    /// What the iterations so far have added up to, since begin_slice() where it was called, surfaces and errors where
+    /// the settings asked for them.
+    IterationSums sums() const;
+
+    /// [P] What pixels remember.
+    std::vector<gpu::PixelState> pixel_states() const;
+
+    /// Frame units a metre.
+    double scale() const { return scale_; }
 
     /// [P] m: the radius of every pixel's disc now; 0 where none of its eye paths has gathered yet.
     std::vector<float> radii() const;
@@ -136,7 +152,10 @@ private:
     bool run_to(std::uint32_t target);
     void choose_kernels(std::uint32_t target);
     bool unblock(const Part& part);
+    bool plans_grid(std::uint32_t i) const;
     template <typename T> std::vector<T> of_pixels(Binding binding) const;
+    template <typename T> void set_pixels(Binding binding, std::span<const T> values);
+    IterationSums surface_sums() const;
     std::uint64_t arrays_of(const BufferRow& row) const;
     template <typename Buffers, typename Use> void each_carried(Buffers& buffers, Use use) const;
     class Written;
@@ -158,6 +177,7 @@ private:
     std::vector<KernelId> launched_;  // since the last submission, in order
     double scale_ = 1.0;              // frame units a metre
     std::uint32_t band_ = 0;          // of which launches are recorded
+    std::uint32_t first_ = 0;         // iteration, since which there are sums
     std::uint32_t completed_ = 0;
     std::uint64_t rays_ = 0;
     std::uint64_t stored_ = 0;

@@ -114,6 +114,9 @@ void Integrator::restore(const Report& report, std::span<const std::byte> state)
     status.completed = std::uint32_t(report.iterations);
     buffer(Binding::status).upload_value(status);
     completed_ = status.completed;
+    first_ = 0;
+    params_.keeps_radii = 0;
+    buffer(Binding::params).upload_value(params_);
     rays_ = report.rays;
     stored_ = report.stored_photons;
     invalid_ = report.invalid;

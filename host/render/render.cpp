@@ -152,13 +152,8 @@ Rendering render(const Scene& scene, const Settings& wanted, Device& device, con
         result.curve.push_back(latest);
     }
     take_picture();
-    // What is found once is missed as often.
-    constexpr double much = 0.01;
-    if (result.estimate && result.estimate->rare > much) {
-        result.warnings.push_back(fmt::format(
-            "{:.2g} % of the picture's light is in pixels that have found most of theirs in one of {} parts of the "
-            "iterations: other pixels may have missed such light, which no estimate of the error knows",
-            100.0 * result.estimate->rare, ERROR_GROUPS));
+    if (result.estimate) {
+        if (const auto warning = warning_of(*result.estimate)) result.warnings.push_back(*warning);
     }
     integrator.fill(result.report);
     result.report.peak_memory_bytes = peak_memory();

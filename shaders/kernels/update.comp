@@ -1,8 +1,8 @@
 #version 460
 // One invocation a pixel: adds the iteration's estimate to the film with the radius that gathered it, then lets the
-// estimator decide the next radius. Reads hits, gathered; writes film, pixels, tally or moments, where errors are asked
-// for (eye_paths has a part of them) errors, and, before the grid is planned anew, the histograms by radius that its
-// plan is made from. O(rings x sectors).
+// estimator decide the next radius, but where radii are the host's. Reads hits, gathered; writes film, pixels, tally or
+// moments, where errors are asked for (eye_paths has a part of them) errors, and, before the grid is planned anew, the
+// histograms by radius that its plan is made from. O(rings x sectors).
 // Cannot fail: a contribution that is not finite is dropped and counted in status.invalid.
 #include "include/kernel.glsl"
 #include "include/error_groups.glsl"
@@ -44,7 +44,7 @@ void main() {
             ++state.seen;
             state.photons = add_saturated(state.photons, sum.count);
         }
-        update(pixel, diffuse, diffuse ? sum.count : 0u, state);
+        if (params.keeps_radii == 0u) update(pixel, diffuse, diffuse ? sum.count : 0u, state);
         state.radius2 = max(state.radius2, RADIUS2_MIN);
         pixels[pixel] = state;
         if (launch.plans_next == 1u && diffuse) {

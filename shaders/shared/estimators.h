@@ -3,26 +3,27 @@
 // of shaders/estimators/NAME.glsl (`_` for `-`). Their contract: estimators/estimator.glsl. CMake reads the
 // rows, too: one a line, indented by four.
 //
-// ROW(name, statistic, folded, fitted, summary)
+// ROW(name, statistic, folded, fitted, later, summary)
 //   name       as --estimator takes it; the first is the default
 //   statistic  of STATISTICS: what it keeps of a pixel
 //   folded     true: opposite sectors of the disc are one cell
 //   fitted     parameters of the density that are fitted before a chi-squared test
+//   later      of LATER: how radii go on after a pilot, where iterations are shared out (host/render/schedule.h)
 //   summary    one line for --help and the README
 #ifdef __cplusplus
 #pragma once
 // clang-format off
-#define ESTIMATORS(ROW)                                                                                               \
-    ROW("cppm", tally, false, 0, "chi-squared test of a uniform density (Lin et al. 2020)")                           \
-    ROW("sppm", none, false, 0, "shared statistics (Hachisuka and Jensen 2009)")                                      \
-    ROW("sppm-kz", none, false, 0, "one schedule for all pixels (Knaus and Zwicker 2011)")                            \
-    ROW("appm", derivative, false, 0, "balance of variance and bias (Kaplanyan and Dachsbacher 2013)")                \
-    ROW("cppm-lf", tally, false, 2, "chi-squared test of a linear density (Lin et al. 2020, supplementary)")          \
-    ROW("cppm-gof", tally, false, 0, "chi-squared test of a generalised odd density (the same)")                      \
-    ROW("cppm-fold", tally, true, 0, "the hypothesis of cppm-gof by folding, without random flips")                   \
-    ROW("cppm-null", none, false, 0, "shrinks with every batch, without a test: the ablation")                        \
-    ROW("ftest", contribution, false, 0, "analysis of variance of contributions (after Lin et al. 2025)")             \
-    ROW("ftest-fold", contribution, true, 0, "the same on folded sectors")
+#define ESTIMATORS(ROW)                                                                                                \
+    ROW("cppm", tally, false, 0, third, "chi-squared test of a uniform density (Lin et al. 2020)")                     \
+    ROW("sppm", none, false, 0, alpha, "shared statistics (Hachisuka and Jensen 2009)")                                \
+    ROW("sppm-kz", none, false, 0, alpha, "one schedule for all pixels (Knaus and Zwicker 2011)")                      \
+    ROW("appm", derivative, false, 0, third, "balance of variance and bias (Kaplanyan and Dachsbacher 2013)")          \
+    ROW("cppm-lf", tally, false, 2, third, "chi-squared test of a linear density (Lin et al. 2020, supplementary)")    \
+    ROW("cppm-gof", tally, false, 0, third, "chi-squared test of a generalised odd density (the same)")                \
+    ROW("cppm-fold", tally, true, 0, third, "the hypothesis of cppm-gof by folding, without random flips")             \
+    ROW("cppm-null", none, false, 0, batches, "shrinks with every batch, without a test: the ablation")                \
+    ROW("ftest", contribution, false, 0, third, "analysis of variance of contributions (after Lin et al. 2025)")       \
+    ROW("ftest-fold", contribution, true, 0, third, "the same on folded sectors")
 // clang-format on
 #endif
 
@@ -37,6 +38,12 @@
 #define KEEPS_tally(IN_TALLY, IN_MOMENTS, cells, rings) IN_TALLY(cells)
 #define KEEPS_derivative(IN_TALLY, IN_MOMENTS, cells, rings) IN_MOMENTS(APPM_MOMENTS)
 #define KEEPS_contribution(IN_TALLY, IN_MOMENTS, cells, rings) IN_MOMENTS(3u * (cells) + 2u * (rings))
+
+// Exponents e of R^2 ~ i^-e over the iterations.
+//   alpha    1 - alpha, the law of sppm and sppm-kz
+//   batches  that of discs which shrink with every batch, by k and beta
+//   third    1/3: of appm the law, of those that test their discs the mean of what they do
+#define LATER(ROW) ROW(alpha) ROW(batches) ROW(third)
 
 // Rows of the moments that appm keeps.
 #define APPM_SECOND_MOMENT_NOW 0u  // this iteration's (1/J) sum Y^2 K_r

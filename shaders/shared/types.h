@@ -606,6 +606,7 @@ struct Params {
     float alpha;
     float k;
     float beta;
+    uint keeps_radii;      // 1: estimators leave a radius as it is, which the host has set: host/render/slices.h
     uint cells;            // capacity of the cell table, a power of two
     uint grid_levels;      // that there is room for now
     uint most_levels;      //   and can be

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "render/render.h"
+#include "render/slices.h"
 #include "scene/gltf/gltf.h"
 #include "support/device/gpu.h"
 #include "support/files/evidence.h"
@@ -33,28 +34,23 @@ std::vector<std::string> expectations() {
 /// A scene, and who brings direct light.
 using NameAndWay = std::tuple<std::string, const char*>;
 
-class ClosedForm : public GpuTest, public testing::WithParamInterface<NameAndWay> {};
-
-TEST_P(ClosedForm, MeanRadianceOfEveryRegion) {
-    const auto& [name, direct] = GetParam();
-    const nlohmann::json expected = expectation_of(name);
-    const Scene scene = load_gltf(scenes / expected["scene"].get<std::string>());
-    EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.front();
+Settings settings_of(const nlohmann::json& expected, const char* direct) {
     Settings settings;
     settings.size = Extent{expected["size"][0], expected["size"][1]};
     settings.iterations = expected[direct]["iterations"];
     settings.photons = expected[direct]["photons"].get<std::uint32_t>();
     settings.direct = direct;
-    const Rendering rendering = render(scene, settings, device(), [](const Progress&) { return true; });
-    EXPECT_TRUE(rendering.warnings.empty()) << rendering.warnings.front();
+    return settings;
+}
 
+void expect_regions(const Image& image, const nlohmann::json& expected) {
     const double tolerance = expected["tolerance"];
-    Image wanted = rendering.image;
+    Image wanted = image;
     for (const auto& region : expected["regions"]) {
         glm::dvec3 sum(0.0);
         std::size_t count = 0;
         for_each_pixel(region, [&](std::uint32_t x, std::uint32_t y) {
-            sum += glm::dvec3(rendering.image.at(x, y));
+            sum += glm::dvec3(image.at(x, y));
             ++count;
             wanted.rgb[std::size_t(y) * wanted.extent.width + x] = {region["rgb"][0], region["rgb"][1],
                                                                     region["rgb"][2]};
@@ -65,12 +61,50 @@ TEST_P(ClosedForm, MeanRadianceOfEveryRegion) {
                 << region["name"] << " channel " << channel << ": ratio " << got / want << "; " << expected["formula"];
         }
     }
-    if (HasFailure()) leave_pictures(rendering.image, wanted);
+    if (testing::Test::HasFailure()) leave_pictures(image, wanted);
+}
+
+class ClosedForm : public GpuTest, public testing::WithParamInterface<NameAndWay> {};
+
+TEST_P(ClosedForm, MeanRadianceOfEveryRegion) {
+    const auto& [name, direct] = GetParam();
+    const nlohmann::json expected = expectation_of(name);
+    const Scene scene = load_gltf(scenes / expected["scene"].get<std::string>());
+    EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.front();
+    const Rendering rendering =
+        render(scene, settings_of(expected, direct), device(), [](const Progress&) { return true; });
+    EXPECT_TRUE(rendering.warnings.empty()) << rendering.warnings.front();
+
+    expect_regions(rendering.image, expected);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ClosedForm,
                          testing::Combine(testing::ValuesIn(expectations()),
                                           testing::Values(direct_sampled, direct_gathered)),
+                         [](const auto& info) { return std::get<0>(info.param) + "_" + std::get<1>(info.param); });
+
+class ClosedFormInSlices : public ClosedForm {};
+
+// The same of a pilot and slices, which are rendered from the last to the first.
+TEST_P(ClosedFormInSlices, MeanRadianceOfEveryRegion) {
+    const auto& [name, direct] = GetParam();
+    const nlohmann::json expected = expectation_of(name);
+    const Scene scene = load_gltf(scenes / expected["scene"].get<std::string>());
+    const auto always = [](const Progress&) { return true; };
+    constexpr std::uint32_t count = 16;  // iterations of the pilot, and of a slice
+    SliceRenderer renderer(scene, resolve_settings(settings_of(expected, direct), scene), device());
+    PilotOfSlices pilot = renderer.render_pilot(count, always).value();
+    IterationSums& sums = pilot.slice.sums;
+    for (std::uint32_t end = renderer.settings().iterations; end > count; end -= count) {
+        const Slice slice = renderer.render_slice(pilot.pilot, end - count, count, always).value();
+        sums.iterations += count;
+        for (std::size_t i = 0; i < sums.film.size(); ++i) sums.film[i] += slice.sums.film[i];
+    }
+    expect_regions(picture_of(sums), expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, ClosedFormInSlices,
+                         testing::Combine(testing::Values("furnace"), testing::Values(direct_sampled, direct_gathered)),
                          [](const auto& info) { return std::get<0>(info.param) + "_" + std::get<1>(info.param); });
 
 }  // namespace

@@ -47,7 +47,8 @@
     X(eye_media) X(eye_medium) X(light_count) X(near_lights) X(light_power) X(asked) X(local_power) \
     X(environment_power) X(environment) X(lens_radius) X(focus_distance) X(start) X(orthographic) X(step_budget) \
     X(knn) X(radius_cap) X(radius_floor) X(footprint_cap) X(inverse_paths) X(flux_unit) X(alpha) X(k) X(beta) \
-    X(cells) X(grid_levels) X(most_levels) X(sort_lanes) X(scan_blocks) X(threshold) X(sector_edge) X(sector_centre)
+    X(keeps_radii) X(cells) X(grid_levels) X(most_levels) X(sort_lanes) X(scan_blocks) X(threshold) X(sector_edge) \
+    X(sector_centre)
 #define MEMBERS_EYE_STATE X(origin) X(flags) X(direction) X(followed) X(throughput) X(leg) X(emission) X(distance) \
     X(end) X(layer) X(direct) X(met) X(media) X(bias)
 #define MEMBERS_SEARCH_STATE X(largest) X(largest_index) X(radius) X(kept)

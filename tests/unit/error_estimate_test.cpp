@@ -19,7 +19,7 @@ constexpr Extent extent{40, 25};  // 1000 pixels: one is left out of trimmed mea
 
 /// Sums of a picture whose iterations are value(pixel, iteration): radiance and bias.
 ErrorSums sums_of(std::uint32_t iterations, const std::function<glm::dvec4(std::size_t, std::uint32_t)>& value) {
-    ErrorSums sums{extent, iterations, {}};
+    ErrorSums sums{extent, group_sizes(iterations), {}};
     std::vector<glm::dvec4> of_group[ERROR_GROUPS];
     for (auto& group : of_group) group.assign(extent.pixels(), glm::dvec4(0.0));
     for (std::uint32_t i = 0; i < iterations; ++i) {

@@ -37,6 +37,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"app/page", {"core", "io", "study", "app", "app/page"}},
     {"app/race", {"core", "scene", "vk", "io", "render", "study", "app", "app/page", "app/race"}},
     {"app/check", {"core", "io", "study", "app", "app/page", "app/check"}},
+    {"app/cluster", {}},  // files for engines
     {"", {"app"}},
 };
 

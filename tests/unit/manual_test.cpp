@@ -20,7 +20,7 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 TEST(Manual, NamesEveryCommandAndOption) {
     const std::string page = manual_page(), bash = bash_completion(), zsh = zsh_completion(), fish = fish_completion();
     const std::vector<CommandText> commands = command_texts();
-    ASSERT_EQ(commands.size(), 8u);
+    ASSERT_EQ(commands.size(), 12u);
     for (const CommandText& command : commands) {
         for (const std::string* text : {&page, &bash, &zsh, &fish}) EXPECT_TRUE(contains(*text, command.name));
         for (const OptionText& option : command.options) {
@@ -62,7 +62,7 @@ std::string completed(const std::vector<std::string>& words) {
 }
 
 TEST(Manual, BashCompletesCommandsOptionsAndValues) {
-    EXPECT_EQ(completed({"vkcppm", "re"}), "reference\n");
+    EXPECT_EQ(completed({"vkcppm", "re"}), "render-shard reference\n");
     EXPECT_EQ(completed({"vkcppm", "s.gltf", "--ph"}), "--photons\n");
     EXPECT_EQ(completed({"vkcppm", "s.gltf", "--estimator", "sppm-"}), "sppm-kz\n");
     EXPECT_EQ(completed({"vkcppm", "race", "s.gltf", "--thin-glass", ""}), "thin solid\n");
