@@ -106,6 +106,11 @@ void add_settings(CLI::App& app, Settings& settings, std::initializer_list<Kind>
     });
 }
 
+/// How a picture is made and what it shows: for whatever makes one.
+void add_picture(CLI::App& app, Settings& settings) {
+    add_settings(app, settings, {Kind::picture, Kind::paths, Kind::view});
+}
+
 /// The setting of that name, with the command's own words.
 void add_setting(CLI::App& app, Settings& settings, std::string_view name, const std::string& help) {
     [[maybe_unused]] bool found = false;
@@ -270,7 +275,7 @@ void declare(CLI::App& app, RenderOptions& options) {
     frames->excludes("--reference")->excludes("--target")->excludes(snapshot);
     add(app, "--fps", "X", options.fps, parse_rate, fmt::format("Frames of a second (default: {:g})", options.fps))
         ->needs(frames);
-    add_settings(app, options.settings, {Kind::picture, Kind::paths, Kind::view});
+    add_picture(app, options.settings);
     add_settings(app, options.settings, {Kind::parameter});
     add_settings(app, options.settings, {Kind::channels});
     add_device(app, options.device);
@@ -329,7 +334,7 @@ void declare(CLI::App& app, PlanOptions& options) {
         "Machines that it is meant for: what is missing is told by shard. Any other number may be taken");
     add(app, "--extend", "N", options.extend, parse_whole,
         "Iterations that the job in this folder is to have more; scene and settings are the job's");
-    add_settings(app, options.settings, {Kind::picture, Kind::view});
+    add_picture(app, options.settings);
     add_settings(app, options.settings, {Kind::parameter});
     add_settings(app, options.settings, {Kind::channels});
     add_device(app, options.device);
@@ -406,7 +411,7 @@ void declare(CLI::App& app, RaceOptions& options) {
         "Make it first, in this time, as vkcppm reference does, with a seed that does not race: DIR/reference.exr")
         ->excludes("--reference");
     add_display(app, options.display, "pictures");
-    add_settings(app, settings, {Kind::picture, Kind::paths, Kind::view});
+    add_picture(app, settings);
     add_settings(app, settings, {Kind::parameter});
     add_device(app, options.device);
     app.add_flag("--quiet", options.quiet, "No progress, only warnings and errors");
@@ -444,7 +449,7 @@ void declare(CLI::App& app, ReferenceOptions& options) {
                             settings.render.iterations));
     add(app, "--trust", "X", settings.trust, parse_real,
         fmt::format("Largest relative standard error of a pixel that is trusted (default: {})", settings.trust));
-    add_settings(app, settings.render, {Kind::picture, Kind::paths, Kind::view});
+    add_picture(app, settings.render);
     add_device(app, options.device);
     app.add_option("--stats", options.stats, "Times and counts")->type_name("FILE.json");
     app.add_flag("--quiet", options.quiet, "No progress, only the summary");

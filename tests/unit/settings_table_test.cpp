@@ -183,6 +183,8 @@ TEST(SettingsTable, EveryCommandTakesTheKindsThatItShould) {
             row.kind == Kind::bound || row.kind == Kind::picture || row.kind == Kind::paths || row.kind == Kind::view;
         Words words = words_of(row.name, two_settings(row)[1]);
         EXPECT_EQ(is_taken({"s.gltf"}, words), row.kind != Kind::internal);
+        EXPECT_EQ(is_taken({"plan", "s.gltf", "-o", "d"}, words),
+                  row.kind != Kind::internal && (row.kind != Kind::bound || row.name == std::string("iterations")));
         EXPECT_EQ(is_taken({"race", "s.gltf", "-o", "d"}, words), common || row.kind == Kind::parameter);
         EXPECT_EQ(is_taken({"reference", "s.gltf", "-o", "r.exr"}, words), common);
         words.push_back("");
