@@ -187,8 +187,9 @@ std::vector<Cut> cuts_of(const Job& job) {
     return cuts;
 }
 
-bool is_of(const Cut& cut, const Shard& shard) {
-    return cut.number > 0 && (cut.number - 1) % shard.of == shard.number - 1;
+std::optional<std::uint32_t> shard_number(const Cut& cut, std::uint32_t shards) {
+    if (cut.number == 0) return std::nullopt;
+    return (cut.number - 1) % shards + 1;
 }
 
 std::string name_of(const Cut& cut) {
@@ -197,8 +198,9 @@ std::string name_of(const Cut& cut) {
 }
 
 std::string shard_of(const Job& job, const Cut& cut) {
-    if (!job.plan.shards || cut.number == 0) return "";
-    return fmt::format("shard {}/{}", (cut.number - 1) % *job.plan.shards + 1, *job.plan.shards);
+    const std::optional<std::uint32_t> shards = job.plan.shards;
+    const auto number = shards ? shard_number(cut, *shards) : std::nullopt;
+    return number ? fmt::format("shard {}/{}", *number, *shards) : "";
 }
 
 bool is_job(const fs::path& folder) { return fs::exists(job_file(folder)); }

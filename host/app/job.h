@@ -44,8 +44,8 @@ struct Job {
 /// All of them in order, the pilot first: slices of `slice` iterations, and shorter ones where it once ended.
 std::vector<Cut> cuts_of(const Job& job);
 
-/// Whether a slice is one of that shard's: they are dealt out in turn.
-bool is_of(const Cut& cut, const Shard& shard);
+/// The shard of so many, from 1 on, that a slice is of: they are dealt out in turn. None of the pilot.
+std::optional<std::uint32_t> shard_number(const Cut& cut, std::uint32_t shards);
 
 /// "slice 3 (iterations 48..63)".
 std::string name_of(const Cut& cut);

@@ -25,7 +25,7 @@ std::string text_of(const Shard& shard) { return fmt::format("shard {}/{}", shar
 std::vector<Cut> left_of(const Job& job, const Shard& shard) {
     std::vector<Cut> left;
     for (const Cut& cut : cuts_of(job)) {
-        if (!is_of(cut, shard)) continue;
+        if (shard_number(cut, shard.of) != shard.number) continue;
         const std::optional<Error> fault = fault_of(job, cut);
         if (!fault) continue;
         if (fault->code() != ExitCode::no_input)

@@ -79,8 +79,9 @@ std::map<std::uint32_t, std::pair<std::uint32_t, std::uint32_t>> shards_of(const
         return std::ranges::find(cuts, cut.number, &Cut::number) != cuts.end();
     };
     for (const Cut& cut : cuts_of(job)) {
-        if (cut.number == 0) continue;
-        auto& [there, all] = shards[(cut.number - 1) % *job.plan.shards + 1];
+        const auto number = shard_number(cut, *job.plan.shards);
+        if (!number) continue;
+        auto& [there, all] = shards[*number];
         ++all;
         there += is_in(status.missing, cut) || is_in(status.broken, cut) ? 0 : 1;
     }

@@ -347,7 +347,6 @@ ErrorEstimate estimate_error(const ErrorSums& sums) {
     const std::span<const std::uint32_t> trimmed = std::span(order).first(kept);
     const std::array<double, estimates> fall = fall_of(errors, trimmed);
     ErrorEstimate estimate;
-    estimate.iterations = sums.iterations();
     estimate.relmse = relmse_of(errors, order, fall);
     estimate.relmse_trimmed = relmse_of(errors, trimmed, fall);
     estimate.noise = median_noise(errors, fall);

@@ -79,7 +79,6 @@ struct ExpectedRelmse {
 };
 
 struct ErrorEstimate {
-    std::uint32_t iterations = 0;
     ExpectedRelmse relmse;          // core/metrics.h, against the truth
     ExpectedRelmse relmse_trimmed;  // the same without the worst 0.1 % of the pixels
     Expected noise;                 // median over pixels of the relative standard error

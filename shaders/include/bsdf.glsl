@@ -158,9 +158,10 @@ Bsdf bsdf_of(SurfaceMaterial material, float ior, bool front) {
     b.r0 = material.metallic * material.color;
     b.r90 = material.metallic;
     b.coat0 = b.coat90 = 0.0;
+    float root = (1.0 - ior) / (1.0 + ior);
+    b.dielectric0 = min(root * root * material.specular_color, vec3(1.0));
     if (HAS_COAT) {
-        float root = (1.0 - ior) / (1.0 + ior);
-        vec3 coat = min(root * root * material.specular_color, vec3(1.0)) * material.specular;
+        vec3 coat = b.dielectric0 * material.specular;
         b.r0 += opaque * coat;
         b.r90 += opaque * material.specular;
         b.coat0 = largest(coat);
@@ -169,17 +170,14 @@ Bsdf bsdf_of(SurfaceMaterial material, float ior, bool front) {
     b.specular = material.specular;
     b.specular_color = vec3(1.0);
     if (HAS_SPECULAR_GLASS) {
-        float root = (1.0 - ior) / (1.0 + ior);
         b.specular_color = min(material.specular_color, vec3(1.0 / max(1e-30, root * root)));
     }
     if (HAS_IRIDESCENCE) {
-        float root = (1.0 - ior) / (1.0 + ior);
         b.film = material.iridescence;
         b.film_index = material.film_index;
         b.film_thickness = material.film_thickness.y;
         b.metallic = material.metallic;
         b.metal0 = material.color;
-        b.dielectric0 = min(root * root * material.specular_color, vec3(1.0));
     }
     b.clearcoat = material.clearcoat;
     b.clearcoat_alpha = alpha_of(material.clearcoat_roughness);

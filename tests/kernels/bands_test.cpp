@@ -23,15 +23,7 @@ namespace {
 constexpr std::uint64_t third = 150;  // pixels of a band: three of 136
 constexpr std::uint32_t iterations = 6;
 
-Settings settings_of(const std::string& estimator) {
-    Settings settings;
-    settings.estimator = estimator;
-    settings.size = Extent{24, 17};
-    settings.photons = 800;
-    settings.aovs = true;
-    settings.error = true;
-    return settings;
-}
+Settings settings_of(const std::string& estimator) { return settings_with_all(estimator, {24, 17}, 800); }
 
 void expect_same(Rig& whole, Rig& cut, const std::string& what) {
     expect_same_state(cut, whole, what);

@@ -21,16 +21,6 @@
 namespace vkcppm::test {
 namespace {
 
-Settings settings_of(const std::string& estimator) {
-    Settings settings;
-    settings.estimator = estimator;
-    settings.size = Extent{24, 16};
-    settings.photons = 600;
-    settings.aovs = true;
-    settings.error = true;
-    return settings;
-}
-
 class Checkpoints : public GpuTest, public testing::WithParamInterface<std::string> {};
 
 // The grid is planned before iterations 0, 1, 2, 4, ... and multiples of 16 from what iterations before have left: put
@@ -41,8 +31,8 @@ TEST_P(Checkpoints, GoOnWithTheSameBits) {
         Report report;
         std::vector<std::byte> state;
     };
-    Rig whole(room(), settings_of(GetParam()), plain_device());
-    Rig resumed(room(), settings_of(GetParam()), plain_device());
+    Rig whole(room(), settings_with_all(GetParam()), plain_device());
+    Rig resumed(room(), settings_with_all(GetParam()), plain_device());
     std::vector<Kept> kept;
     for (const std::uint32_t stop : {5u, 16u, 23u}) {
         whole.integrator.run(stop - whole.integrator.completed());
@@ -73,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(Estimators, Checkpoints, testing::ValuesIn(all_estimato
 class CheckpointState : public GpuTest {};
 
 TEST_F(CheckpointState, OfAGridOfSeveralLevelsGoesOnWithTheSameBits) {
-    Settings settings = settings_of("cppm");
+    Settings settings = settings_with_all("cppm");
     settings.size = Extent{256, 256};  // so many discs that a level more pays
     settings.photons = 400;
     Rig whole(room(), settings, plain_device());
@@ -98,7 +88,7 @@ TEST_F(CheckpointState, OfAGridOfSeveralLevelsGoesOnWithTheSameBits) {
 }
 
 TEST_F(CheckpointState, OfAnotherSizeOrWithAnImpossibleGridIsRefused) {
-    Rig rig(room(), settings_of("cppm"), plain_device());
+    Rig rig(room(), settings_with_all("cppm"), plain_device());
     rig.integrator.run(2);
     const std::vector<std::byte> good = rig.integrator.save();
     for (const std::size_t size : {std::size_t(0), good.size() - 1, good.size() + 1}) {
@@ -154,34 +144,34 @@ protected:
 };
 
 TEST_F(PassHashes, DoNotDependOnHowTheWorkIsCut) {
-    Rig whole(room(), settings_of("cppm"), plain_device());
+    Rig whole(room(), settings_with_all("cppm"), plain_device());
     const auto expected = run(whole, 5);
     ASSERT_EQ(expected.size(), 30u);
     EXPECT_EQ(expected[6].pass + expected[7].pass + expected[8].pass + expected[9].pass + expected[10].pass +
                   expected[11].pass,
               "photongrideyeknngatherupdate");
 
-    Rig cut(room(), settings_of("cppm"), plain_device());
+    Rig cut(room(), settings_with_all("cppm"), plain_device());
     gpu::Params params = cut.integrator.params();
     params.step_budget = 150;
     params.photon_capacity = 3;
     cut.integrator.set_params(params);
     EXPECT_EQ(first_difference(expected, run(cut, 5)), "") << "small step budgets and photon buffers";
 
-    Rig plain(room(), settings_of("cppm"), plain_device());
+    Rig plain(room(), settings_with_all("cppm"), plain_device());
     plain.integrator.run(5);
     expect_same_state(whole, plain, "with hashes and without");
 
-    Rig resumed(room(), settings_of("cppm"), plain_device());
+    Rig resumed(room(), settings_with_all("cppm"), plain_device());
     resumed.integrator.restore(whole.report(), whole.integrator.save());
     EXPECT_EQ(first_difference(run(whole, 3), run(resumed, 3)), "") << "of iterations 6 to 8, after a checkpoint";
 }
 
 TEST_F(PassHashes, TellTheFirstPassThatDiffers) {
-    Rig expected_rig(room(), settings_of("cppm"), plain_device());
+    Rig expected_rig(room(), settings_with_all("cppm"), plain_device());
     const auto expected = run(expected_rig, 3);
     const auto differs_with = [&](std::uint32_t before, const auto& change) {
-        Rig rig(room(), settings_of("cppm"), plain_device());
+        Rig rig(room(), settings_with_all("cppm"), plain_device());
         auto hashes = run(rig, before);
         gpu::Params params = rig.integrator.params();
         change(params);

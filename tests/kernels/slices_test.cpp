@@ -20,16 +20,6 @@
 namespace vkcppm::test {
 namespace {
 
-Settings settings_of(const std::string& estimator) {
-    Settings settings;
-    settings.estimator = estimator;
-    settings.size = Extent{24, 16};
-    settings.photons = 600;
-    settings.aovs = true;
-    settings.error = true;
-    return settings;
-}
-
 const KeepGoing always = [](const Progress&) { return true; };
 
 /// A scene and who renders slices of it.
@@ -53,7 +43,7 @@ void expect_same_sums(const IterationSums& a, const IterationSums& b, const std:
 class Slices : public GpuTest, public testing::WithParamInterface<std::string> {};
 
 TEST_P(Slices, HaveTheSameBitsInAnyOrder) {
-    Slicer one(settings_of(GetParam())), other(settings_of(GetParam()));
+    Slicer one(settings_with_all(GetParam())), other(settings_with_all(GetParam()));
     const auto pilot = one.renderer.render_pilot(least_pilot, always);
     const auto again = other.renderer.render_pilot(least_pilot, always);
     ASSERT_TRUE(pilot && again);
@@ -79,7 +69,7 @@ TEST_P(Slices, HaveTheSameBitsInAnyOrder) {
 }
 
 TEST_P(Slices, HaveRadiiByTheSchedule) {
-    const Settings settings = settings_of(GetParam());
+    const Settings settings = settings_with_all(GetParam());
     Slicer slicer(settings);
     const PilotOfSlices pilot = slicer.renderer.render_pilot(16, always).value();
     const Slice slice = slicer.renderer.render_slice(pilot.pilot, 40, 8, always).value();
@@ -101,7 +91,7 @@ class SlicesOfARender : public GpuTest {};
 // With radii that hardly shrink a render has the same ones in every iteration, whoever renders it: what is left is
 // that its random numbers and strata are those of the iteration. Photons may be added up in another order.
 TEST_F(SlicesOfARender, AddUpToItWhereRadiiStay) {
-    Settings settings = settings_of("sppm-kz");
+    Settings settings = settings_with_all("sppm-kz");
     settings.alpha = 0.9999999;
     settings.iterations = 20;
     Slicer slicer(settings);
@@ -127,7 +117,7 @@ TEST_F(SlicesOfARender, AddUpToItWhereRadiiStay) {
 }
 
 TEST_F(SlicesOfARender, ThePilotIsItsBeginning) {
-    Settings settings = settings_of("cppm");
+    Settings settings = settings_with_all("cppm");
     settings.iterations = 16;
     Slicer slicer(settings);
     const PilotOfSlices pilot = slicer.renderer.render_pilot(16, always).value();

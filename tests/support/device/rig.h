@@ -16,6 +16,17 @@
 
 namespace vkcppm::test {
 
+/// Of a small render that keeps all that one can: every further channel, and what errors are estimated from.
+inline Settings settings_with_all(const std::string& estimator, Extent size = {24, 16}, std::uint32_t photons = 600) {
+    Settings settings;
+    settings.estimator = estimator;
+    settings.size = size;
+    settings.photons = photons;
+    settings.aovs = true;
+    settings.error = true;
+    return settings;
+}
+
 /// Where a light path has stored its photons: `count` of them from `slot` on.
 struct StoredPath {
     std::size_t slot;

@@ -72,6 +72,15 @@ Case on_surfaces(const char* name, std::function<void(Material&)> change) {
             }};
 }
 
+/// Floor and ball of that roughness: a coat over the floor, the ball of metal.
+void make_glossy(Scene& scene, float roughness) {
+    for (const auto i : {floor_, ball}) {
+        scene.materials[i].roughness = roughness;
+        scene.materials[i].specular = 1.0f;
+    }
+    scene.materials[ball].metallic = 1.0f;
+}
+
 }  // namespace
 
 const std::vector<Case>& material_cases() {
@@ -195,12 +204,8 @@ const std::vector<Case>& material_cases() {
              });
              s.materials[ball].anisotropy_texture = turns;
              s.materials[floor_].anisotropy_rotation = 0.6f;
-             for (const auto i : {floor_, ball}) {
-                 s.materials[i].anisotropy = 0.8f;
-                 s.materials[i].roughness = 0.25f;
-                 s.materials[i].specular = 1.0f;
-             }
-             s.materials[ball].metallic = 1.0f;
+             for (const auto i : {floor_, ball}) s.materials[i].anisotropy = 0.8f;
+             make_glossy(s, 0.25f);
          }},
         {"iridescence",
          [](Scene& s, Settings&) {
@@ -208,12 +213,8 @@ const std::vector<Case>& material_cases() {
                  add_image(s, 4, 1, [](auto x, auto) { return glm::vec4(float(x) / 3.0f, 1.0f, 1.0f, 1.0f); });
              s.materials[floor_].iridescence_thickness_texture =
                  add_image(s, 1, 4, [](auto, auto y) { return glm::vec4(1.0f, float(y) / 3.0f, 1.0f, 1.0f); });
-             for (const auto i : {floor_, ball}) {
-                 s.materials[i].iridescence = 1.0f;
-                 s.materials[i].roughness = 0.3f;
-                 s.materials[i].specular = 1.0f;
-             }
-             s.materials[ball].metallic = 1.0f;
+             for (const auto i : {floor_, ball}) s.materials[i].iridescence = 1.0f;
+             make_glossy(s, 0.3f);
          }},
         {"iridescence_glass",
          [](Scene& s, Settings&) {
