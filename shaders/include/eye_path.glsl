@@ -262,6 +262,7 @@ void ask(inout EyePath path, Vertex v) {
         AskedGroup group = params.asked[g];
         uvec2 seeds = bits.xy;
         for (uint i = 0u; i < group.candidates; ++i) {
+            --path.steps;
             dimension += CANDIDATE_DIMENSIONS;
             vec4 u = random4(params.seed, launch.iteration, STREAM_EYE, pixel, dimension);
             uvec2 pair = sobol_pair(launch.iteration * group.candidates + i, seeds);

@@ -43,7 +43,7 @@ uint component(uvec4 texel, int k) { return k == 0 ? texel.x : k == 1 ? texel.y 
 
 // Words from number k on of a record that starts at texel `first`. FOUR: a texel holds four of them; ONE: one.
 uint word_FOUR(usamplerBuffer texels, int first, int k) {
-    return component(texelFetch(texels, first + (k >> 2)), k & 3);
+    return texelFetch(texels, first + (k >> 2))[k & 3];
 }
 uint word_ONE(usamplerBuffer texels, int first, int k) { return texelFetch(texels, first + k).x; }
 

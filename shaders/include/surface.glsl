@@ -22,10 +22,13 @@ struct Surface {
 
 bool is_in_instance(Hit hit) { return HAS_INSTANCES && hit.instance != NO_INSTANCE; }
 
-// A corner's shading normal, in the scene frame.
-vec3 corner_normal(Hit hit, uint packed) {
+// The instance that was hit, where is_in_instance().
+Instance instance_of(Hit hit) { return instances_at(is_in_instance(hit) ? hit.instance : 0u); }
+
+// A corner's shading normal, in the scene frame. at: of the hit.
+vec3 corner_normal(Hit hit, Instance at, uint packed) {
     vec3 n = unpack_direction(packed);
-    return is_in_instance(hit) ? normalize(normal_to_scene(instances_at(hit.instance), n)) : n;
+    return is_in_instance(hit) ? normalize(normal_to_scene(at, n)) : n;
 }
 
 // Moves the hit into its triangle: the slack lets it lie outside by rounding, which is far in barycentrics of a sliver.
@@ -46,8 +49,8 @@ Surface surface_at(inout Hit hit, vec3 direction) {
     surface.position = v0.xyz + hit.barycentric.x * e1 + hit.barycentric.y * e2;
     surface.error = v0.w;
     float hand = 1.0;
+    Instance at = instance_of(hit);
     if (is_in_instance(hit)) {
-        Instance at = instances_at(hit.instance);
         surface.position = point_to_scene(at, surface.position);
         surface.error = at.error + at.stretch * v0.w;
         e1 = linear_to_scene(at, e1);
@@ -62,8 +65,9 @@ Surface surface_at(inout Hit hit, vec3 direction) {
     surface.geometric *= side;
     surface.normal = surface.geometric;
     if (!is_flat(corner.w)) {
-        vec3 n = (1.0 - hit.barycentric.x - hit.barycentric.y) * corner_normal(hit, corner.x) +
-                 hit.barycentric.x * corner_normal(hit, corner.y) + hit.barycentric.y * corner_normal(hit, corner.z);
+        vec3 n = (1.0 - hit.barycentric.x - hit.barycentric.y) * corner_normal(hit, at, corner.x) +
+                 hit.barycentric.x * corner_normal(hit, at, corner.y) +
+                 hit.barycentric.y * corner_normal(hit, at, corner.z);
         float squared = dot(n, n);
         // Opposite corner normals can cancel: the geometric normal stands in.
         if (squared > 1e-8) surface.normal = side * inversesqrt(squared) * n;
@@ -81,22 +85,23 @@ vec3 leave(Surface surface, vec3 direction) {
     return surface.position + side * surface.error * surface.geometric;
 }
 
-// A corner's tangent, in the scene frame.
-vec3 corner_tangent(Hit hit, uint packed) {
+// A corner's tangent, in the scene frame. at: of the hit.
+vec3 corner_tangent(Hit hit, Instance at, uint packed) {
     vec3 t = unpack_direction(packed);
-    return is_in_instance(hit) ? normalize(linear_to_scene(instances_at(hit.instance), t)) : t;
+    return is_in_instance(hit) ? normalize(linear_to_scene(at, t)) : t;
 }
 
 // The tangent of the triangle at the hit, on its front: that of the file, else the derivative of the point by u.
 // w: the sign of the bitangent; 0 where there is no tangent to be had.
 vec4 tangent_at(Hit hit, vec3 front_normal, bool second_uv) {
-    float hand = is_in_instance(hit) ? instances_at(hit.instance).hand : 1.0;  // a mirror turns the bitangent
+    Instance at = instance_of(hit);
+    float hand = is_in_instance(hit) ? at.hand : 1.0;  // a mirror turns the bitangent
     if (HAS_TANGENTS) {
         uvec4 corner = texelFetch(tangents_texels, int(hit.triangle));
         if ((corner.w & TANGENTS_GIVEN) == TANGENTS_GIVEN) {
-            vec3 t = (1.0 - hit.barycentric.x - hit.barycentric.y) * corner_tangent(hit, corner.x) +
-                     hit.barycentric.x * corner_tangent(hit, corner.y) +
-                     hit.barycentric.y * corner_tangent(hit, corner.z);
+            vec3 t = (1.0 - hit.barycentric.x - hit.barycentric.y) * corner_tangent(hit, at, corner.x) +
+                     hit.barycentric.x * corner_tangent(hit, at, corner.y) +
+                     hit.barycentric.y * corner_tangent(hit, at, corner.z);
             return vec4(t, (corner.w & TANGENTS_TURNED) != 0u ? -hand : hand);
         }
     }
@@ -112,7 +117,7 @@ vec4 tangent_at(Hit hit, vec3 front_normal, bool second_uv) {
     if (area == 0.0) return vec4(0.0);
     float turn = sign(area);
     vec3 t = turn * (e1 * dv.y - e2 * dv.x);
-    if (is_in_instance(hit)) t = linear_to_scene(instances_at(hit.instance), t);
+    if (is_in_instance(hit)) t = linear_to_scene(at, t);
     // glTF's v runs down the image, and its bitangent up: cross(n, t) where the image is not mirrored, and there (u, v)
     // turn clockwise.
     return vec4(t, -turn * hand);
@@ -132,12 +137,12 @@ bool has_second_uv(uint texture_number) {
     return texture_number != 0u && (textures_at(texture_number - 1u).flags & TEXTURE_SECOND_UV) != 0u;
 }
 
-// The normal `front_normal` bent by a normal texture; both on the front of the triangle.
-vec3 bent_normal(Hit hit, vec3 front_normal, uint texture_number, float scale, vec4 coordinates) {
+// The normal `front_normal` bent by a texel of a normal texture; both normals on the front of the triangle.
+vec3 bent_normal(Hit hit, vec3 front_normal, uint texture_number, float scale, vec3 texel) {
     if (texture_number == 0u) return front_normal;
     vec3 t, b;
     if (!tangent_frame(hit, front_normal, has_second_uv(texture_number), t, b)) return front_normal;
-    vec3 n = texture_at(texture_number, coordinates).xyz * 2.0 - 1.0;
+    vec3 n = texel * 2.0 - 1.0;
     n.xy *= scale;
     return normalize(n.x * t + n.y * b + n.z * front_normal);
 }
@@ -145,13 +150,12 @@ vec3 bent_normal(Hit hit, vec3 front_normal, uint texture_number, float scale, v
 // Turns the tangent of the surface to where the facets of the material are wider, in the frame that normal textures are
 // in: of the texture coordinates of the normal texture, else of the anisotropy texture, else of the first set. Without
 // such a frame the material has no anisotropy.
-void set_tangent(Hit hit, inout Surface surface, inout SurfaceMaterial material) {
+void set_tangent(Hit hit, vec3 texel, inout Surface surface, inout SurfaceMaterial material) {
     bool second_uv = false;
     vec2 direction = vec2(1.0, 0.0);
     if (HAS_TEXTURES && has(material, SURFACE_TEXTURED)) {
         uint number = material.texture[TEXTURE_ANISOTROPY];
         if (number != 0u) {
-            vec3 texel = texture_at(number, texcoords_at(hit.triangle, hit.barycentric)).rgb;
             direction = texel.rg * 2.0 - 1.0;
             material.anisotropy.z *= texel.b;
         }
@@ -169,6 +173,45 @@ void set_tangent(Hit hit, inout Surface surface, inout SurfaceMaterial material)
     }
 }
 
+// Whether a kind of texture (TEXTURE_*) has to be looked up in this scene.
+bool is_read(int kind) {
+    if (kind == TEXTURE_METALLIC_ROUGHNESS) return HAS_REFLECTION || HAS_TRANSMISSION;
+    if (kind == TEXTURE_TRANSMISSION) return HAS_TRANSMISSION;
+    if (kind == TEXTURE_SPECULAR || kind == TEXTURE_SPECULAR_COLOR) return HAS_COAT || HAS_SPECULAR_GLASS;
+    if (kind == TEXTURE_CLEARCOAT || kind == TEXTURE_CLEARCOAT_ROUGHNESS) return HAS_CLEARCOAT;
+    if (kind == TEXTURE_NORMAL) return HAS_NORMAL_MAPS;
+    if (kind == TEXTURE_CLEARCOAT_NORMAL) return HAS_NORMAL_MAPS && HAS_CLEARCOAT;
+    if (kind == TEXTURE_ANISOTROPY) return HAS_ANISOTROPY;
+    if (kind == TEXTURE_IRIDESCENCE || kind == TEXTURE_IRIDESCENCE_THICKNESS) return HAS_IRIDESCENCE;
+    return true;
+}
+
+// The texels of a material at the coordinates of both sets, by their kind; white where it has none. All lanes run what
+// one of them runs: a loop over the textures that there are looks up as many as the material with the most has, and is
+// compiled once.
+void read_textures(SurfaceMaterial material, vec4 coordinates, out vec4 texels[TEXTURE_COUNT]) {
+    uint there = 0u;
+    for (int kind = 0; kind < TEXTURE_COUNT; ++kind) {
+        texels[kind] = vec4(1.0);
+        if (is_read(kind) && material.texture[kind] != 0u) there |= 1u << kind;
+    }
+    while (there != 0u) {
+        int next = findLSB(there);
+        there &= there - 1u;
+        uint number = 0u;
+        for (int kind = 0; kind < TEXTURE_COUNT; ++kind) {
+            if (is_read(kind)) number = kind == next ? material.texture[kind] : number;
+        }
+        vec4 texel = texture_at(number, coordinates);
+        for (int kind = 0; kind < TEXTURE_COUNT; ++kind) {
+            if (is_read(kind)) texels[kind] = kind == next ? texel : texels[kind];
+        }
+    }
+}
+
+// What a path spends of its budget of steps, trips of loops, at a surface that it meets.
+int vertex_steps() { return HAS_TEXTURES ? 1 + TEXTURE_COUNT : 1; }
+
 // The material at the hit. Bends the normals of the surface where it has normal textures, and turns its tangent.
 SurfaceMaterial material_at(Hit hit, vec3 direction, inout Surface surface) {
     SurfaceMaterial material = materials_at(surface.material);
@@ -177,48 +220,42 @@ SurfaceMaterial material_at(Hit hit, vec3 direction, inout Surface surface) {
         material.color *= color.rgb;
         material.opacity *= color.a;
     }
+    vec4 texels[TEXTURE_COUNT];
     if (HAS_TEXTURES && has(material, SURFACE_TEXTURED)) {
-        vec4 coordinates = texcoords_at(hit.triangle, hit.barycentric);
-        vec4 base = texture_at(material.texture[TEXTURE_BASE_COLOR], coordinates);
-        material.color *= base.rgb;
-        material.opacity *= base.a;
-        material.emission *= texture_at(material.texture[TEXTURE_EMISSIVE], coordinates).rgb;
-        if (HAS_REFLECTION || HAS_TRANSMISSION) {
-            vec2 rough_metal = texture_at(material.texture[TEXTURE_METALLIC_ROUGHNESS], coordinates).gb;
-            material.roughness *= rough_metal.x;
-            material.metallic *= rough_metal.y;
-        }
-        if (HAS_TRANSMISSION) {
-            material.transmission *= texture_at(material.texture[TEXTURE_TRANSMISSION], coordinates).r;
-        }
-        if (HAS_COAT || HAS_SPECULAR_GLASS) {
-            material.specular *= texture_at(material.texture[TEXTURE_SPECULAR], coordinates).a;
-            material.specular_color *= texture_at(material.texture[TEXTURE_SPECULAR_COLOR], coordinates).rgb;
-        }
-        if (HAS_CLEARCOAT) {
-            material.clearcoat *= texture_at(material.texture[TEXTURE_CLEARCOAT], coordinates).r;
-            material.clearcoat_roughness *= texture_at(material.texture[TEXTURE_CLEARCOAT_ROUGHNESS], coordinates).g;
-        }
+        read_textures(material, texcoords_at(hit.triangle, hit.barycentric), texels);
+        material.color *= texels[TEXTURE_BASE_COLOR].rgb;
+        material.opacity *= texels[TEXTURE_BASE_COLOR].a;
+        material.emission *= texels[TEXTURE_EMISSIVE].rgb;
+        material.roughness *= texels[TEXTURE_METALLIC_ROUGHNESS].g;
+        material.metallic *= texels[TEXTURE_METALLIC_ROUGHNESS].b;
+        material.transmission *= texels[TEXTURE_TRANSMISSION].r;
+        material.specular *= texels[TEXTURE_SPECULAR].a;
+        material.specular_color *= texels[TEXTURE_SPECULAR_COLOR].rgb;
+        material.clearcoat *= texels[TEXTURE_CLEARCOAT].r;
+        material.clearcoat_roughness *= texels[TEXTURE_CLEARCOAT_ROUGHNESS].g;
         if (HAS_IRIDESCENCE) {
             // The thickness is the most without a texture.
-            float thick = texture_at(material.texture[TEXTURE_IRIDESCENCE_THICKNESS], coordinates).g;
-            material.iridescence *= texture_at(material.texture[TEXTURE_IRIDESCENCE], coordinates).r;
-            material.film_thickness.y = mix(material.film_thickness.x, material.film_thickness.y, thick);
+            material.iridescence *= texels[TEXTURE_IRIDESCENCE].r;
+            material.film_thickness.y = mix(material.film_thickness.x, material.film_thickness.y,
+                                            texels[TEXTURE_IRIDESCENCE_THICKNESS].g);
         }
         if (HAS_NORMAL_MAPS) {
             float side = surface.front ? 1.0 : -1.0;
             vec3 n = side * surface.normal;
-            surface.normal =
-                side * bent_normal(hit, n, material.texture[TEXTURE_NORMAL], material.normal_scale, coordinates);
+            surface.normal = side * bent_normal(hit, n, material.texture[TEXTURE_NORMAL], material.normal_scale,
+                                                texels[TEXTURE_NORMAL].xyz);
             if (dot(surface.normal, direction) >= 0.0) surface.normal = surface.geometric;
             if (HAS_CLEARCOAT) {
-                surface.clearcoat_normal = side * bent_normal(hit, n, material.texture[TEXTURE_CLEARCOAT_NORMAL],
-                                                              material.clearcoat_normal_scale, coordinates);
+                surface.clearcoat_normal =
+                    side * bent_normal(hit, n, material.texture[TEXTURE_CLEARCOAT_NORMAL],
+                                       material.clearcoat_normal_scale, texels[TEXTURE_CLEARCOAT_NORMAL].xyz);
                 if (dot(surface.clearcoat_normal, direction) >= 0.0) surface.clearcoat_normal = surface.geometric;
             }
         }
     }
-    if (HAS_ANISOTROPY && material.anisotropy.z > 0.0) set_tangent(hit, surface, material);
+    if (HAS_ANISOTROPY && material.anisotropy.z > 0.0) {
+        set_tangent(hit, texels[TEXTURE_ANISOTROPY].xyz, surface, material);
+    }
     return material;
 }
 

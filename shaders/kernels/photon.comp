@@ -223,7 +223,7 @@ void main() {
         }
         // No `continue`: lanes are promised to be together again behind a branch, not where a loop goes on.
         if (running && found != TRACE_UNFINISHED) {
-            --steps;
+            steps -= vertex_steps();
             first_ray = false;
             fresh = true;
             ++rays;
