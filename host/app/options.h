@@ -23,15 +23,15 @@ namespace vkcppm {
 /// The scene and what is done to it before anything else.
 struct SceneOptions {
     std::filesystem::path file;
-    std::optional<std::filesystem::path> root;  // what the file names lies below
-    std::string animation;                      // by name or index, or "all"; empty: at rest
-    double at = 0.0;                            // s, of the animation
-    std::string variant;                        // by name or index; empty: none
-    std::vector<MaterialChange> set;            // values of materials, one after the other
+    std::optional<std::filesystem::path> root{};  // what the file names lies below
+    std::string animation{};                      // by name or index, or "all"; empty: at rest
+    double at = 0.0;                              // s, of the animation
+    std::string variant{};                        // by name or index; empty: none
+    std::vector<MaterialChange> set{};            // values of materials, one after the other
     PunctualUnits punctual_units = PunctualUnits::by_generator;
-    std::optional<std::filesystem::path> environment;  // EXR or Radiance
-    double environment_rotation = 0.0;                 // degrees about the vertical, counter-clockwise from above
-    double environment_strength = 1.0;                 // a factor of its radiance
+    std::optional<std::filesystem::path> environment{};  // EXR or Radiance
+    double environment_rotation = 0.0;                   // degrees about the vertical, counter-clockwise from above
+    double environment_strength = 1.0;                   // a factor of its radiance
     ThinGlass thin_glass = ThinGlass::thin;
     bool strict = false;  // warnings of the scene are errors
 };

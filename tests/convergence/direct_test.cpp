@@ -77,7 +77,9 @@ TEST(Panes, LetDirectLightPass) {
             const double want = rho[c] / std::numbers::pi * irradiance[c] * tint[c] * 0.96;
             double sum = 0.0;
             for (const float value : channels.at(std::string("direct.") + "RGB"[c])) {
-                if (sampled) EXPECT_NEAR(value, want, 1e-5 * want) << direct << ", channel " << c;
+                if (sampled) {
+                    EXPECT_NEAR(value, want, 1e-5 * want) << direct << ", channel " << c;
+                }
                 sum += value;
             }
             EXPECT_NEAR(sum / double(rig.pixels()), want, 0.01 * want) << direct << ", channel " << c;

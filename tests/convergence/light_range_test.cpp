@@ -66,9 +66,13 @@ TEST_P(LightRange, WindowsTheLightAndEndsIt) {
     for (std::uint32_t i = 0; i < pixels * pixels; ++i) {
         const double x = side * ((i % pixels + 0.5) / pixels - 0.5), z = side * ((i / pixels + 0.5) / pixels - 0.5);
         const double here = expected(x, z, 1.0, 1.6), value = image.rgb[i].g;
-        if (sampled) EXPECT_NEAR(value, here, 0.02 * here + 2e-4) << x << ", " << z;
+        if (sampled) {
+            EXPECT_NEAR(value, here, 0.02 * here + 2e-4) << x << ", " << z;
+        }
         // Photons end there; discs of pixels beyond reach back to the nearest of them, until tests make them smaller.
-        if (std::hypot(x, z) > 1.6) EXPECT_LE(value, sampled ? 0.0 : 1e-3) << x << ", " << z;
+        if (std::hypot(x, z) > 1.6) {
+            EXPECT_LE(value, sampled ? 0.0 : 1e-3) << x << ", " << z;
+        }
         got += value;
         want += here;
     }

@@ -28,8 +28,6 @@ struct Published {
     std::uint32_t subgroup_size, group_invocations, push_constant_bytes;
 };
 
-void PrintTo(const Published& device, std::ostream* stream) { *stream << device.name; }
-
 constexpr auto discrete = DeviceType::discrete, integrated = DeviceType::integrated;
 constexpr std::uint32_t all = 0xffffffffu;
 // clang-format off

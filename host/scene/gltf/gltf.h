@@ -14,11 +14,11 @@ namespace vkcppm {
 
 /// How a file is read.
 struct GltfOptions {
-    std::optional<std::filesystem::path> root;  // what the file names lies below; by default default_root()
-    std::string animation;                      // by name or index, or "all"; empty: at rest
-    double at = 0.0;                            // s, of the animation
-    std::string variant;                        // KHR_materials_variants, by name or index; empty: none
-    std::vector<MaterialChange> set;            // of its materials, one after the other
+    std::optional<std::filesystem::path> root{};  // what the file names lies below; by default default_root()
+    std::string animation{};                      // by name or index, or "all"; empty: at rest
+    double at = 0.0;                              // s, of the animation
+    std::string variant{};                        // KHR_materials_variants, by name or index; empty: none
+    std::vector<MaterialChange> set{};            // of its materials, one after the other
     PunctualUnits punctual_units = PunctualUnits::by_generator;
     Sharing sharing = Sharing::by_cost;
 };
