@@ -44,11 +44,11 @@ TEST_P(Estimators, SameSeedSameBits) {
 // The rule of appm alone may let a radius grow: it follows an estimate of the curvature.
 TEST_P(Estimators, TenThousandIterations) {
     const Scene scene = project_scene("caustic");
-    Rig run(scene, settings(12, 256), plain_device());
+    Rig run(scene, settings(8, 64), plain_device());
     std::vector<gpu::PixelState> before;
     for (int step = 0; step < 100; ++step) {
         run.integrator.run(100);
-        const auto pixels = run.integrator.buffer(Binding::pixels).download<gpu::PixelState>(144);
+        const auto pixels = run.integrator.buffer(Binding::pixels).download<gpu::PixelState>(64);
         for (std::size_t i = 0; i < pixels.size(); ++i) {
             ASSERT_TRUE(std::isfinite(pixels[i].radius2) && pixels[i].radius2 >= 0.0f && pixels[i].radius2 < 4.0f)
                 << "radius^2 " << pixels[i].radius2 << " of pixel " << i << " after " << (step + 1) * 100
