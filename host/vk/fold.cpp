@@ -44,7 +44,7 @@ std::optional<Word> literals_of(spv::Op op) {
     case spv::OpLoopMerge: return ~3u;
     case spv::OpBranchConditional: return ~7u;
     case spv::OpSwitch: return 0x55555554;  // selector, default, and a literal and a label for each case
-    case spv::OpEntryPoint:                 // model, function, and a name before further ids: is treated apart
+    case spv::OpEntryPoint:                 // model, function, and a name before further ids: code_of() adds it
     case spv::OpTypePointer:
     case spv::OpVariable:
     case spv::OpFunction:
@@ -117,6 +117,7 @@ struct Code {
     Word result() const { return named ? words[1 + typed] : 0; }
     std::size_t first() const { return 1 + typed + named; }  // operand's word
     Instruction operands() const { return words.subspan(first()); }
+    /// Whether a word is an id that is used.
     bool is_id(std::size_t word) const {
         if (word < first()) return typed && word == 1;
         const std::size_t i = word - first();
@@ -143,6 +144,11 @@ std::optional<std::vector<Code>> code_of(std::span<const Word> spirv) {
         const auto literals = literals_of(code.op);
         if (!literals) return std::nullopt;
         code.literals = *literals;
+        for (std::size_t i = 3; code.op == spv::OpEntryPoint; ++i) {  // to the zero that ends the name
+            if (i > 24 || i == words.size()) return std::nullopt;
+            code.literals |= 1u << (i - 1);
+            if (words[i] >> 24 == 0) break;
+        }
         spv::HasResultAndType(code.op, &code.named, &code.typed);
         // Scopes behind the flags of an access are ids, of which kernels have none.
         const std::size_t flags = code.op == spv::OpLoad ? 4 : code.op == spv::OpStore ? 3 : words.size();
@@ -151,6 +157,25 @@ std::optional<std::vector<Code>> code_of(std::span<const Word> spirv) {
         all.push_back(code);
     }
     return all;
+}
+
+/// Numbers ids in the order of the words. Compilers leave gaps, and tables are as long as the largest: ours and
+/// drivers'. False where the module holds what is not known here.
+bool number_ids(Words& spirv) {
+    const auto code = code_of(spirv);
+    if (!code) return false;
+    Words numbers(spirv[spirv_bound]);
+    Word count = 1;
+    for (const Code& each : *code) {
+        for (std::size_t i = 1; i < each.words.size(); ++i) {
+            if (!each.is_id(i) && !(each.named && i + 1 == each.first())) continue;
+            Word& number = numbers[each.words[i]];
+            if (number == 0) number = count++;
+            spirv[std::size_t(&each.words[i] - spirv.data())] = number;
+        }
+    }
+    spirv[spirv_bound] = count;
+    return true;
 }
 
 /// An operation on booleans (0, 1) or integers of 32 bits, where it is known and defined. One operand: b is 0.
@@ -599,8 +624,8 @@ private:
 };
 
 /// The module without results that nobody uses, stores to local variables that nobody reads, and what is said of either.
-/// Ids are numbered anew: drivers have tables as long as the largest.
-Words without_dead_code(const Words& spirv, const std::vector<Code>& code) {
+Words without_dead_code(const Words& spirv) {
+    const std::vector<Code> code = *code_of(spirv);
     std::vector<const Code*> defined(spirv[spirv_bound]);
     std::vector<char> used(spirv[spirv_bound]);
     std::vector<Word> waiting;
@@ -648,12 +673,7 @@ Words without_dead_code(const Words& spirv, const std::vector<Code>& code) {
         for (const Code* store : of->second) use_operands(*store);
     }
 
-    Words out(spirv.begin(), spirv.begin() + spirv_header), numbers(spirv[spirv_bound]);
-    Word count = 1;
-    const auto number = [&](Word id) {
-        if (numbers[id] == 0) numbers[id] = count++;
-        return numbers[id];
-    };
+    Words out(spirv.begin(), spirv.begin() + spirv_header);
     for (const Code& each : code) {
         const Code* variable = each.op == spv::OpStore ? local(each) : nullptr;
         if ((each.named && !used[each.result()]) || (is_about(each.op) && !used[each.words[1]]) ||
@@ -661,23 +681,12 @@ Words without_dead_code(const Words& spirv, const std::vector<Code>& code) {
             continue;
         }
         const std::size_t at = out.size();
-        if (each.op == spv::OpEntryPoint) {
-            std::size_t name_end = 3;  // the word with the zero that ends it
-            while (each.words[name_end] >> 24 != 0) ++name_end;
-            out.insert(out.end(), {0, each.words[1], number(each.words[2])});
-            out.insert(out.end(), each.words.begin() + 3, each.words.begin() + std::ptrdiff_t(name_end) + 1);
-            for (const Word id : each.words.subspan(name_end + 1)) {
-                if (used[id]) out.push_back(number(id));
-            }
-            out[at] = first_word(each.op, out.size() - at);
-            continue;
-        }
         for (std::size_t i = 0; i < each.words.size(); ++i) {
-            const bool id = i > 0 && (each.is_id(i) || (each.named && i == 1u + each.typed));
-            out.push_back(id ? number(each.words[i]) : each.words[i]);
+            const bool dropped = each.op == spv::OpEntryPoint && i > 0 && each.is_id(i) && !used[each.words[i]];
+            if (!dropped) out.push_back(each.words[i]);
         }
+        out[at] = first_word(each.op, out.size() - at);
     }
-    out[spirv_bound] = count;
     return out;
 }
 
@@ -685,10 +694,13 @@ Words without_dead_code(const Words& spirv, const std::vector<Code>& code) {
 
 std::vector<std::uint32_t> folded(std::span<const std::uint32_t> spirv, const Specialization& constants) {
     const Words whole(spirv.begin(), spirv.end());
-    auto code = code_of(spirv);
-    if (!code) return whole;
-    const auto reached = Propagation(spirv, std::move(*code), constants).run();
-    return reached ? without_dead_code(*reached, *code_of(*reached)) : whole;
+    Words numbered = whole;
+    if (!number_ids(numbered)) return whole;
+    const auto reached = Propagation(numbered, *code_of(numbered), constants).run();
+    if (!reached) return whole;
+    Words used = without_dead_code(*reached);
+    number_ids(used);
+    return used;
 }
 
 }  // namespace vkcppm
