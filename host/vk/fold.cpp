@@ -14,206 +14,42 @@ namespace {
 using Word = std::uint32_t;
 using Words = std::vector<Word>;
 
-/// Which operands of an instruction, behind its result, are literals, all others being ids: the i-th where bit i is set;
-/// from the 31st on the last two bits take turns. None: nothing is known of it.
-std::optional<Word> literals_of(spv::Op op) {
-    switch (op) {
-    case spv::OpCapability:
-    case spv::OpExtension:
-    case spv::OpExtInstImport:
-    case spv::OpMemoryModel:
-    case spv::OpTypeInt:
-    case spv::OpTypeFloat:
-    case spv::OpConstant:
-    case spv::OpSpecConstant: return ~0u;
-    case spv::OpExecutionMode:
-    case spv::OpName:
-    case spv::OpMemberName:
-    case spv::OpDecorate:
-    case spv::OpMemberDecorate:
-    case spv::OpTypeVector:
-    case spv::OpTypeMatrix:
-    case spv::OpTypeImage:
-    case spv::OpLoad:
-    case spv::OpCompositeExtract:
-    case spv::OpArrayLength:
-    case spv::OpSelectionMerge: return ~1u;
-    case spv::OpStore:
-    case spv::OpVectorShuffle:
-    case spv::OpCompositeInsert:
-    case spv::OpLoopMerge: return ~3u;
-    case spv::OpBranchConditional: return ~7u;
-    case spv::OpSwitch: return 0x55555554;  // selector, default, and a literal and a label for each case
-    case spv::OpEntryPoint:                 // model, function, and a name before further ids: code_of() adds it
-    case spv::OpTypePointer:
-    case spv::OpVariable:
-    case spv::OpFunction:
-    case spv::OpSpecConstantOp: return 1u;
-    case spv::OpExtInst:
-    case spv::OpExecutionModeId:
-    case spv::OpGroupNonUniformBallotBitCount: return 2u;
-    case spv::OpImageFetch: return 4u;
-    case spv::OpUndef:
-    case spv::OpTypeVoid:
-    case spv::OpTypeBool:
-    case spv::OpTypeSampledImage:
-    case spv::OpTypeArray:
-    case spv::OpTypeRuntimeArray:
-    case spv::OpTypeStruct:
-    case spv::OpTypeFunction:
-    case spv::OpConstantTrue:
-    case spv::OpConstantFalse:
-    case spv::OpConstantComposite:
-    case spv::OpConstantNull:
-    case spv::OpSpecConstantTrue:
-    case spv::OpSpecConstantFalse:
-    case spv::OpSpecConstantComposite:
-    case spv::OpFunctionParameter:
-    case spv::OpFunctionCall:
-    case spv::OpFunctionEnd:
-    case spv::OpAccessChain:
-    case spv::OpVectorExtractDynamic:
-    case spv::OpCompositeConstruct:
-    case spv::OpCopyObject:
-    case spv::OpCopyLogical:
-    case spv::OpTranspose:
-    case spv::OpImage:
-    case spv::OpAny:
-    case spv::OpAll:
-    case spv::OpIsNan:
-    case spv::OpIsInf:
-    case spv::OpSelect:
-    case spv::OpControlBarrier:
-    case spv::OpMemoryBarrier:
-    case spv::OpGroupNonUniformElect:
-    case spv::OpGroupNonUniformAll:
-    case spv::OpGroupNonUniformAny:
-    case spv::OpGroupNonUniformBallot:
-    case spv::OpPhi:
-    case spv::OpLabel:
-    case spv::OpBranch:
-    case spv::OpReturn:
-    case spv::OpReturnValue:
-    case spv::OpUnreachable: return 0u;
-    default: break;
-    }
-    const auto within = [op](spv::Op first, spv::Op last) { return op >= first && op <= last; };
-    const bool of_ids = within(spv::OpConvertFToU, spv::OpFConvert) || op == spv::OpBitcast ||
-                        within(spv::OpSNegate, spv::OpSMulExtended) ||
-                        within(spv::OpLogicalEqual, spv::OpFUnordGreaterThanEqual) ||
-                        within(spv::OpShiftRightLogical, spv::OpBitCount) ||
-                        within(spv::OpAtomicLoad, spv::OpAtomicXor);
-    return of_ids ? std::optional<Word>(0u) : std::nullopt;
-}
-
-/// An instruction whose operands are known.
-struct Code {
-    Instruction words;
-    spv::Op op = spv::OpNop;
-    bool typed = false, named = false;  // has a result type, has a result
-    Word literals = 0;
-
-    Word type() const { return typed ? words[1] : 0; }
-    Word result() const { return named ? words[1 + typed] : 0; }
-    std::size_t first() const { return 1 + typed + named; }  // operand's word
-    Instruction operands() const { return words.subspan(first()); }
-    /// Whether a word is an id that is used.
-    bool is_id(std::size_t word) const {
-        if (word < first()) return typed && word == 1;
-        const std::size_t i = word - first();
-        return (literals >> (i < 32 ? i : 30 + i % 2) & 1) == 0;
-    }
-    /// Does more than to give its result.
-    bool acts() const {
-        return !named || op == spv::OpLabel || op == spv::OpExtInstImport || op == spv::OpFunction ||
-               op == spv::OpFunctionParameter || op == spv::OpFunctionCall ||
-               (op >= spv::OpAtomicLoad && op <= spv::OpAtomicXor) ||
-               (op == spv::OpLoad && words.size() > 4 && (words[4] & spv::MemoryAccessVolatileMask) != 0);
-    }
-};
-
-bool is_about(spv::Op op) {  // says something of an id
-    return op == spv::OpName || op == spv::OpMemberName || op == spv::OpDecorate || op == spv::OpMemberDecorate;
-}
-
-std::optional<std::vector<Code>> code_of(std::span<const Word> spirv) {
-    std::vector<Code> all;
-    all.reserve(spirv.size() / 3);
-    for (const Instruction words : instructions_of(spirv)) {
-        Code code{words, opcode(words)};
-        const auto literals = literals_of(code.op);
-        if (!literals) return std::nullopt;
-        code.literals = *literals;
-        for (std::size_t i = 3; code.op == spv::OpEntryPoint; ++i) {  // to the zero that ends the name
-            if (i > 24 || i == words.size()) return std::nullopt;
-            code.literals |= 1u << (i - 1);
-            if (words[i] >> 24 == 0) break;
-        }
-        spv::HasResultAndType(code.op, &code.named, &code.typed);
-        // Scopes behind the flags of an access are ids, of which kernels have none.
-        const std::size_t flags = code.op == spv::OpLoad ? 4 : code.op == spv::OpStore ? 3 : words.size();
-        constexpr Word plain = Word(spv::MemoryAccessVolatileMask) | Word(spv::MemoryAccessAlignedMask);
-        if (flags < words.size() && (words[flags] & ~plain) != 0) return std::nullopt;
-        all.push_back(code);
-    }
-    return all;
-}
-
-/// Numbers ids in the order of the words. Compilers leave gaps, and tables are as long as the largest: ours and
-/// drivers'. False where the module holds what is not known here.
-bool number_ids(Words& spirv) {
-    const auto code = code_of(spirv);
-    if (!code) return false;
-    Words numbers(spirv[spirv_bound]);
-    Word count = 1;
-    for (const Code& each : *code) {
-        for (std::size_t i = 1; i < each.words.size(); ++i) {
-            if (!each.is_id(i) && !(each.named && i + 1 == each.first())) continue;
-            Word& number = numbers[each.words[i]];
-            if (number == 0) number = count++;
-            spirv[std::size_t(&each.words[i] - spirv.data())] = number;
-        }
-    }
-    spirv[spirv_bound] = count;
-    return true;
-}
-
 /// An operation on booleans (0, 1) or integers of 32 bits, where it is known and defined. One operand: b is 0.
 std::optional<Word> computed(spv::Op op, Word a, Word b) {
     const auto sa = std::int32_t(a), sb = std::int32_t(b);
     switch (op) {
-    case spv::OpCopyObject:
-    case spv::OpBitcast: return a;
-    case spv::OpNot: return ~a;
-    case spv::OpSNegate: return 0u - a;
-    case spv::OpLogicalNot: return a ^ 1u;
-    case spv::OpIAdd: return a + b;
-    case spv::OpISub: return a - b;
-    case spv::OpIMul: return a * b;
-    case spv::OpUDiv: return b == 0 ? std::nullopt : std::optional(a / b);
-    case spv::OpUMod: return b == 0 ? std::nullopt : std::optional(a % b);
-    case spv::OpSDiv: return sb == 0 || sb == -1 ? std::nullopt : std::optional(Word(sa / sb));
-    case spv::OpShiftRightLogical: return b > 31 ? std::nullopt : std::optional(a >> b);
-    case spv::OpShiftRightArithmetic: return b > 31 ? std::nullopt : std::optional(Word(sa >> b));
-    case spv::OpShiftLeftLogical: return b > 31 ? std::nullopt : std::optional(a << b);
-    case spv::OpLogicalAnd:
-    case spv::OpBitwiseAnd: return a & b;
-    case spv::OpLogicalOr:
-    case spv::OpBitwiseOr: return a | b;
-    case spv::OpBitwiseXor: return a ^ b;
-    case spv::OpLogicalEqual:
-    case spv::OpIEqual: return a == b;
-    case spv::OpLogicalNotEqual:
-    case spv::OpINotEqual: return a != b;
-    case spv::OpUGreaterThan: return a > b;
-    case spv::OpSGreaterThan: return sa > sb;
-    case spv::OpUGreaterThanEqual: return a >= b;
-    case spv::OpSGreaterThanEqual: return sa >= sb;
-    case spv::OpULessThan: return a < b;
-    case spv::OpSLessThan: return sa < sb;
-    case spv::OpULessThanEqual: return a <= b;
-    case spv::OpSLessThanEqual: return sa <= sb;
-    default: return std::nullopt;
+        case spv::OpCopyObject:
+        case spv::OpBitcast: return a;
+        case spv::OpNot: return ~a;
+        case spv::OpSNegate: return 0u - a;
+        case spv::OpLogicalNot: return a ^ 1u;
+        case spv::OpIAdd: return a + b;
+        case spv::OpISub: return a - b;
+        case spv::OpIMul: return a * b;
+        case spv::OpUDiv: return b == 0 ? std::nullopt : std::optional(a / b);
+        case spv::OpUMod: return b == 0 ? std::nullopt : std::optional(a % b);
+        case spv::OpSDiv: return sb == 0 || sb == -1 ? std::nullopt : std::optional(Word(sa / sb));
+        case spv::OpShiftRightLogical: return b > 31 ? std::nullopt : std::optional(a >> b);
+        case spv::OpShiftRightArithmetic: return b > 31 ? std::nullopt : std::optional(Word(sa >> b));
+        case spv::OpShiftLeftLogical: return b > 31 ? std::nullopt : std::optional(a << b);
+        case spv::OpLogicalAnd:
+        case spv::OpBitwiseAnd: return a & b;
+        case spv::OpLogicalOr:
+        case spv::OpBitwiseOr: return a | b;
+        case spv::OpBitwiseXor: return a ^ b;
+        case spv::OpLogicalEqual:
+        case spv::OpIEqual: return a == b;
+        case spv::OpLogicalNotEqual:
+        case spv::OpINotEqual: return a != b;
+        case spv::OpUGreaterThan: return a > b;
+        case spv::OpSGreaterThan: return sa > sb;
+        case spv::OpUGreaterThanEqual: return a >= b;
+        case spv::OpSGreaterThanEqual: return sa >= sb;
+        case spv::OpULessThan: return a < b;
+        case spv::OpSLessThan: return sa < sb;
+        case spv::OpULessThanEqual: return a <= b;
+        case spv::OpSLessThanEqual: return sa <= sb;
+        default: return std::nullopt;
     }
 }
 
@@ -223,13 +59,13 @@ struct Side {
 };
 Side side_of(spv::Op op) {
     switch (op) {
-    case spv::OpLogicalAnd: return {0u, 1u};
-    case spv::OpLogicalOr: return {1u, 0u};
-    case spv::OpBitwiseAnd: return {0u, ~0u};
-    case spv::OpBitwiseOr: return {~0u, 0u};
-    case spv::OpIMul: return {0u, 1u};
-    case spv::OpIAdd: return {{}, 0u};
-    default: return {};
+        case spv::OpLogicalAnd: return {0u, 1u};
+        case spv::OpLogicalOr: return {1u, 0u};
+        case spv::OpBitwiseAnd: return {0u, ~0u};
+        case spv::OpBitwiseOr: return {~0u, 0u};
+        case spv::OpIMul: return {0u, 1u};
+        case spv::OpIAdd: return {{}, 0u};
+        default: return {};
     }
 }
 
@@ -237,11 +73,11 @@ Side side_of(spv::Op op) {
 /// instead of work lists: only what goes round a loop takes another turn.
 class Propagation {
 public:
-    Propagation(std::span<const Word> spirv, std::vector<Code> code, const Specialization& constants)
-        : code_(std::move(code)), header_(spirv.first(spirv_header)), ids_(spirv[spirv_bound]), given_(constants) {}
+    Propagation(std::span<const Word> spirv, const std::vector<Code>& code, const Specialization& constants)
+        : code_(code), header_(spirv.first(spirv_header)), ids_(spirv[spirv_bound]), given_(constants) {}
 
-    /// The module without constants to specialise and without blocks that are not reached; none where it has what is not
-    /// known here.
+    /// The module without constants to specialise and without blocks that are not reached; none where it has what is
+    /// not known here.
     std::optional<Words> run() {
         if (!read_globals() || !read_blocks()) return std::nullopt;
         do {
@@ -253,24 +89,22 @@ public:
     }
 
 private:
-    enum class Scalar : std::uint8_t { none, boolean, integer };
     /// Of an id: what it always is. A value is the id of a constant, of what it is a copy of, or itself where nothing
     /// more is known; 0 where it was not yet seen to be computed.
     struct Id {
         Word value = 0;
-        Word bits = 0;        // of a constant that is a boolean or an integer of 32 bits
-        bool known = false;   // it is such a constant
-        bool global = false;  // it stands before all functions
-        Scalar scalar = Scalar::none;  // such a type
-        std::uint32_t at = 0;          // index of its instruction, of a label that of its block
+        Word bits = 0;         // of a constant that is a boolean or an integer of 32 bits
+        bool known = false;    // it is such a constant
+        bool scalar = false;   // it is the type of such
+        bool global = false;   // it stands before all functions
+        std::uint32_t at = 0;  // index of its instruction, of a label that of its block
     };
-    enum class Stub : std::uint8_t { none, merge, next };
     /// `first` is its label's instruction and `last` its terminator's.
     struct Block {
         std::size_t first = 0, last = 0;
         bool reached = false;
-        Stub stub = Stub::none;  // it is not reached but named: as merge block, as a loop's continue target
-        Word header = 0;         // of that loop
+        // What it holds where it is not reached but named, as merge block or as a loop's continue target.
+        Words stub = {};
     };
 
     /// The id of the constant of that type and bits: of one that is there, else `fresh`, else a new one.
@@ -286,7 +120,7 @@ private:
     }
 
     Words constant_words(Word type, Word id, Word bits) const {
-        if (ids_[type].scalar == Scalar::integer) return {first_word(spv::OpConstant, 4), type, id, bits};
+        if (code_[ids_[type].at].op == spv::OpTypeInt) return {first_word(spv::OpConstant, 4), type, id, bits};
         return {first_word(bits != 0 ? spv::OpConstantTrue : spv::OpConstantFalse, 3), type, id};
     }
 
@@ -312,24 +146,17 @@ private:
             id.at = std::uint32_t(functions_);
             id.global = true;
             const auto is = [&](Word bits) { ids_[result].value = constant(type, bits, result); };
-            if (code.op == spv::OpTypeBool) id.scalar = Scalar::boolean;
-            if (code.op == spv::OpTypeInt && words[2] == 32) id.scalar = Scalar::integer;
-            const bool scalar = ids_[type].scalar != Scalar::none;
+            id.scalar = code.op == spv::OpTypeBool || code.op == spv::OpTypeInt;
+            const bool scalar = ids_[type].scalar;
             if (code.op == spv::OpConstantTrue) is(1);
             if (code.op == spv::OpConstantFalse) is(0);
             if (code.op == spv::OpConstant && scalar) is(words[3]);
             // Not one that others become: the index of a member must not be a null.
             if (code.op == spv::OpConstantNull && scalar) id.known = true;
-            if (code.op == spv::OpSpecConstantTrue || code.op == spv::OpSpecConstantFalse ||
-                code.op == spv::OpSpecConstant) {
-                const auto spec_id = spec_ids.find(result);
-                const auto given = spec_id == spec_ids.end() ? given_.end() : given_.find(spec_id->second);
+            if (code.op == spv::OpSpecConstant) {
                 if (!scalar) return false;
-                if (given != given_.end()) {
-                    is(code.op == spv::OpSpecConstant ? given->second : given->second != 0);
-                } else {
-                    is(code.op == spv::OpSpecConstant ? words[3] : code.op == spv::OpSpecConstantTrue);
-                }
+                const auto given = spec_ids.contains(result) ? given_.find(spec_ids[result]) : given_.end();
+                is(given == given_.end() ? words[3] : given->second);
             }
             if (code.op == spv::OpSpecConstantOp) {
                 const Word value = evaluated(spv::Op(words[3]), type, result, words.subspan(4));
@@ -362,7 +189,7 @@ private:
             if (const auto condition = known(0)) return value(*condition != 0 ? 1 : 2);
             return value(1) == value(2) ? value(1) : fresh;
         }
-        if (ids_[type].scalar == Scalar::none || !computed(op, 1, 1)) return fresh;
+        if (!ids_[type].scalar || !computed(op, 1, 1)) return fresh;
         const auto a = known(0), b = operands.size() == 2 ? known(1) : 0u;
         if (a && b) {
             const auto bits = computed(op, *a, *b);
@@ -465,8 +292,8 @@ private:
             const Code& code = code_[i];
             const Word result = code.result();
             if (result == 0 || ids_[result].value == result) continue;
-            const Word value = code.op == spv::OpPhi ? met(code, label)
-                                                     : evaluated(code.op, code.type(), result, code.operands());
+            const Word value =
+                code.op == spv::OpPhi ? met(code, label) : evaluated(code.op, code.type(), result, code.operands());
             const Word before = ids_[result].value;
             if (value == before || value == 0) continue;
             // From a constant to a copy to itself and never back, so that it ends.
@@ -505,14 +332,14 @@ private:
                 continue;
             }
             Block& end = blocks_[ids_[merge->words[1]].at];
-            if (!end.reached && end.stub == Stub::none) end.stub = Stub::merge;
+            if (!end.reached && end.stub.empty()) end.stub = {first_word(spv::OpUnreachable, 1)};
             if (merge->op != spv::OpLoopMerge) continue;
             Block& next = blocks_[ids_[merge->words[2]].at];
-            next.header = label_of(block);
-            if (!next.reached) next.stub = Stub::next;
+            const Word header = label_of(block);
+            if (!next.reached) next.stub = {first_word(spv::OpBranch, 2), header};
             bool back = !next.reached;
-            for (std::size_t i = ids_[next.header].at; !back && i < blocks_.size(); ++i) {
-                each_successor(blocks_[i], [&](Word label) { back = back || label == next.header; });
+            for (std::size_t i = ids_[header].at; !back && i < blocks_.size(); ++i) {
+                each_successor(blocks_[i], [&](Word label) { back = back || label == header; });
             }
             if (!back) return false;
         }
@@ -554,7 +381,7 @@ private:
     void write_global(Words& out, const Code& code) const {
         if (code.op == spv::OpDecorate && code.words[2] == spv::DecorationSpecId) return;
         const Word result = code.result();
-        if (code.op == spv::OpEntryPoint || is_about(code.op)) {  // of an id, not of what has its value
+        if (code.op == spv::OpEntryPoint || code.is_about()) {  // of an id, not of what has its value
             out.insert(out.end(), code.words.begin(), code.words.end());
         } else if (result == 0 || ids_[result].value == result) {
             if (ids_[result].known && code.op != spv::OpConstantNull) {
@@ -571,11 +398,10 @@ private:
     }
 
     void write_block(Words& out, const Block& block) {
-        const auto branch = [&](Word label) { out.insert(out.end(), {first_word(spv::OpBranch, 2), label}); };
-        if (!block.reached && block.stub == Stub::none) return;
+        if (!block.reached && block.stub.empty()) return;
         out.insert(out.end(), {first_word(spv::OpLabel, 2), label_of(block)});
-        if (block.stub == Stub::next) return branch(block.header);
-        if (block.stub == Stub::merge) return out.push_back(first_word(spv::OpUnreachable, 1));
+        out.insert(out.end(), block.stub.begin(), block.stub.end());
+        if (!block.reached) return;
         const Word target = chosen(block);
         for (std::size_t i = block.first + 1; i <= block.last; ++i) {
             const Code& code = code_[i];
@@ -586,7 +412,7 @@ private:
             } else if (ends && code.op == spv::OpSwitch) {
                 out.insert(out.end(), {first_word(spv::OpSwitch, 3), ids_[code.words[1]].value, target});
             } else if (ends) {
-                branch(target);
+                out.insert(out.end(), {first_word(spv::OpBranch, 2), target});
             } else if (code.op != spv::OpSelectionMerge || target == 0 || code_[block.last].op == spv::OpSwitch) {
                 write(out, code);
             }
@@ -603,7 +429,7 @@ private:
             if (goes(pairs[i + 1], label)) out.insert(out.end(), {ids_[pairs[i]].value, pairs[i + 1]});
         }
         const Code* merge = merge_of(block);
-        if (merge && merge->op == spv::OpLoopMerge && block_of(merge->words[2]).stub == Stub::next) {
+        if (merge && merge->op == spv::OpLoopMerge && !block_of(merge->words[2]).reached) {
             Word& undefined = undefined_[phi.type()];
             if (undefined == 0) undefined = added_global({first_word(spv::OpUndef, 3), phi.type(), 0});
             out.insert(out.end(), {undefined, merge->words[2]});
@@ -611,7 +437,7 @@ private:
         out[at] = first_word(spv::OpPhi, out.size() - at);
     }
 
-    std::vector<Code> code_;
+    const std::vector<Code>& code_;
     std::span<const Word> header_;
     std::vector<Id> ids_;
     const Specialization& given_;
@@ -623,7 +449,8 @@ private:
     bool changed_ = false;
 };
 
-/// The module without results that nobody uses, stores to local variables that nobody reads, and what is said of either.
+/// The module without results that nobody uses, stores to local variables that nobody reads, and what is said of
+/// either.
 Words without_dead_code(const Words& spirv) {
     const std::vector<Code> code = *code_of(spirv);
     std::vector<const Code*> defined(spirv[spirv_bound]);
@@ -653,7 +480,7 @@ Words without_dead_code(const Words& spirv) {
             each.words[3] == spv::BuiltInWorkgroupSize) {
             use(each.words[1]);
         }
-        if (!each.acts() || is_about(each.op)) continue;
+        if (!each.acts() || each.is_about()) continue;
         const Code* variable = each.op == spv::OpStore ? local(each) : nullptr;
         if (each.op == spv::OpEntryPoint) {
             use(each.words[2]);
@@ -676,7 +503,7 @@ Words without_dead_code(const Words& spirv) {
     Words out(spirv.begin(), spirv.begin() + spirv_header);
     for (const Code& each : code) {
         const Code* variable = each.op == spv::OpStore ? local(each) : nullptr;
-        if ((each.named && !used[each.result()]) || (is_about(each.op) && !used[each.words[1]]) ||
+        if ((each.named && !used[each.result()]) || (each.is_about() && !used[each.words[1]]) ||
             (variable && !used[variable->result()])) {
             continue;
         }
@@ -694,13 +521,15 @@ Words without_dead_code(const Words& spirv) {
 
 std::vector<std::uint32_t> folded(std::span<const std::uint32_t> spirv, const Specialization& constants) {
     const Words whole(spirv.begin(), spirv.end());
-    Words numbered = whole;
-    if (!number_ids(numbered)) return whole;
-    const auto reached = Propagation(numbered, *code_of(numbered), constants).run();
+    Words words = whole;
+    const auto code = code_of(words);
+    if (!code) return whole;
+    number_ids(words, *code);
+    const auto reached = Propagation(words, *code, constants).run();
     if (!reached) return whole;
-    Words used = without_dead_code(*reached);
-    number_ids(used);
-    return used;
+    words = without_dead_code(*reached);
+    number_ids(words, *code_of(words));
+    return words;
 }
 
 }  // namespace vkcppm
