@@ -22,7 +22,8 @@ std::optional<std::uint32_t> literals_of(spv::Op op) {
         {~3u, {OpStore, OpVectorShuffle, OpCompositeInsert, OpLoopMerge}},
         {~7u, {OpBranchConditional}},
         {0x55555554u, {OpSwitch}},  // selector, default, and a literal and a label for each case
-        // Of an entry point: model, function, and a name before further ids, which code_of() adds.
+        // Of an entry point: model, function, and a name before further ids; of an operation on constants: its opcode
+        // and operands. code_of() adds to both.
         {1u, {OpEntryPoint, OpTypePointer, OpVariable, OpFunction, OpSpecConstantOp}},
         {2u, {OpExtInst, OpExecutionModeId, OpGroupNonUniformBallotBitCount}},
         {4u, {OpImageFetch}},
@@ -59,8 +60,9 @@ std::optional<std::vector<Code>> code_of(std::span<const std::uint32_t> spirv) {
     for (const Instruction words : instructions_of(spirv)) {
         Code code{words, opcode(words)};
         const auto literals = literals_of(code.op);
-        if (!literals) return std::nullopt;
-        code.literals = *literals;
+        const auto of_operation = code.op == spv::OpSpecConstantOp ? literals_of(spv::Op(words[3])) : 0u;
+        if (!literals || !of_operation) return std::nullopt;
+        code.literals = *literals | *of_operation << 1;
         for (std::size_t i = 3; code.op == spv::OpEntryPoint; ++i) {  // to the zero that ends the name
             if (i > 24 || i == words.size()) return std::nullopt;
             code.literals |= 1u << (i - 1);
