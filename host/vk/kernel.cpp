@@ -10,7 +10,9 @@
 #include "core/process.h"
 #include "vk/buffer_impl.h"
 #include "vk/device_impl.h"
+#include "vk/fold.h"
 #include "vk/reconvergence.h"
+#include "vk/spirv.h"
 
 namespace vkcppm {
 namespace {
@@ -19,11 +21,10 @@ constexpr std::uint32_t stamps_a_pool = 1024;
 
 /// Those of the constants that a module has: pipelines that differ in others alone are one.
 Specialization of_module(std::span<const std::uint32_t> spirv, const Specialization& constants) {
-    constexpr std::uint32_t header = 5, op_decorate = 71, decoration_spec_id = 1;
     Specialization found;
-    for (std::size_t at = header; at < spirv.size(); at += std::max(1u, spirv[at] >> 16)) {
-        if ((spirv[at] & 0xffff) != op_decorate || spirv[at + 2] != decoration_spec_id) continue;
-        const auto constant = constants.find(spirv[at + 3]);
+    for (const Instruction words : instructions_of(spirv)) {
+        if (opcode(words) != spv::OpDecorate || words[2] != spv::DecorationSpecId) continue;
+        const auto constant = constants.find(words[3]);
         if (constant != constants.end()) found.insert(*constant);
     }
     return found;
@@ -99,11 +100,11 @@ Kernel::Kernel(Device& device, std::string name, std::span<const std::uint32_t> 
     if (!made) {
         guarded(fmt::format("creating kernel '{}'", impl_->name), [&] {
             auto& gpu = *device.impl().device;
-            const std::vector<std::uint32_t> words = with_promise(spirv, device.policy().reconvergence);
+            const std::vector<std::uint32_t> words = with_promise(folded(spirv, own), device.policy().reconvergence);
             const vk::raii::ShaderModule module(gpu, vk::ShaderModuleCreateInfo({}, words));
             std::vector<vk::SpecializationMapEntry> entries;
             std::vector<std::uint32_t> values;
-            for (const auto& [id, value] : own) {
+            for (const auto& [id, value] : of_module(words, own)) {  // none where it was folded
                 entries.emplace_back(id, std::uint32_t(values.size() * sizeof(value)), sizeof(value));
                 values.push_back(value);
             }

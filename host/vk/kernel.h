@@ -2,7 +2,6 @@
 // Compute pipelines over the one descriptor set of shaders/shared/buffers.h, and launches of them.
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -10,6 +9,7 @@
 
 #include "shared/types.h"
 #include "vk/buffer.h"
+#include "vk/fold.h"
 
 namespace vkcppm {
 
@@ -37,13 +37,10 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Values of specialization constants by id (SPEC_*).
-using Specialization = std::map<std::uint32_t, std::uint32_t>;
-
 class Kernel {
 public:
     /// `spirv` is a module of shaders/kernels or tests/kernels. `specialization` must hold SPEC_WORKGROUP. Compiles it,
-    /// but where the device has compiled the same before.
+    /// folded to that, but where the device has compiled the same before.
     Kernel(Device& device, std::string name, std::span<const std::uint32_t> spirv,
            const Specialization& specialization);
     ~Kernel();

@@ -48,7 +48,7 @@ struct Confined {
 };
 const std::vector<Confined> confined = {
     {R"((.*/)?tiny_gltf\.h)", R"(scene/gltf/[a-z_]*\.cpp)"},
-    {R"((vulkan|vk_video)/.*)", R"(vk/.*)"},
+    {R"((vulkan|vk_video|spirv)/.*)", R"(vk/.*)"},
     {R"((OpenEXR/|Imath/)?(Imf|Imath|Iex|half).*\.h)", R"(io/.*)"},
     {R"(png\.h)", R"(io/.*|scene/gltf/picture\.cpp)"},
     {R"(turbojpeg\.h)", R"(scene/gltf/picture\.cpp)"},

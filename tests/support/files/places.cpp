@@ -8,6 +8,8 @@ std::string program() { return VKCPPM_PROGRAM; }
 
 std::string fault_layer_folder() { return VKCPPM_FAULT_LAYER; }
 
+std::string spirv_val() { return VKCPPM_SPIRV_VAL; }
+
 std::filesystem::path failure_folder() {
     const std::filesystem::path folder = VKCPPM_FAILURES;
     std::filesystem::create_directories(folder);

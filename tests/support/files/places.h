@@ -16,6 +16,9 @@ std::string program();
 /// Holds layer.json of the Vulkan layer that injects faults.
 std::string fault_layer_folder();
 
+/// The program that validates modules.
+std::string spirv_val();
+
 /// Where a failed test leaves what explains it; made where it is not there.
 std::filesystem::path failure_folder();
 
