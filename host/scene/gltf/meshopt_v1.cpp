@@ -107,7 +107,7 @@ std::uint32_t follow(std::uint8_t mode, std::uint32_t before, std::uint32_t delt
     for (unsigned at = 0; at < 32; at += width) {
         const std::uint32_t v = delta >> at & mask;
         const std::uint32_t step = mode == 0 ? unzigzag(std::uint8_t(v)) : unzigzag(std::uint16_t(v));
-        after |= ((before >> at) + step & mask) << at;
+        after |= (((before >> at) + step) & mask) << at;
     }
     return after;
 }
