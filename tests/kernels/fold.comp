@@ -79,6 +79,22 @@ uint left(uint x) {
     return b + turns;
 }
 
+// A selection of which, as the constants have it, neither side comes to its end.
+uint skipped(uint x) {
+    uint value = x;
+    for (uint i = 0u; i < 5u; ++i) {
+        if ((mixed(value + i) & 1u) != 0u) {
+            value += 3u;
+            continue;
+        } else {
+            value ^= i;
+            if (FIRST) continue;
+        }
+        value = mixed(value) + 11u;
+    }
+    return value;
+}
+
 // A way back that hangs on a constant.
 uint repeated(uint x) {
     uint value = x, turns = 0u;
@@ -103,13 +119,31 @@ uint switched(uint x) {
     return value;
 }
 
+uint mixed(uint value, uvec4 parts) {
+    return mixed(mixed(mixed(mixed(value ^ parts.x) ^ parts.y) ^ parts.z) ^ parts.w);
+}
+
+// Operations that the fold computes, of constants.
+uint computed(uint x) {
+    uint a = STACK * 0x20000001u, b = FEATURES + 3u;
+    if (SECOND) a = STACK == 1u ? b : ~b - a;
+    int s = -int(a), t = -int(b);
+    uint value = mixed(x, uvec4(a < b, a <= b, a > b, a >= b));
+    value = mixed(value, uvec4(s < t, s <= t, s > t, s >= t));
+    value = mixed(value, uvec4(a == b, a != b, FIRST == SECOND, FIRST != (a > 1u)));
+    value = mixed(value, uvec4(FIRST || s > 0, FIRST && s < 0, !FIRST, ~a));
+    value = mixed(value, uvec4(a + b, a - b, a * b, a / b));
+    value = mixed(value, uvec4(a % b, s / (t * t + 2), a >> b, s >> b));
+    return mixed(value, uvec4(a << b, a & b, a | b, a ^ b));
+}
+
 // Floating-point arithmetic between constants, which the device does.
 uint floated(uint x) {
     float third = float(FEATURES & 7u) / 3.0;
     return floatBitsToUint(SECOND ? third * float(x) + 0.1 : sqrt(float(x)) - third);
 }
 
-#define RESULTS 9u
+#define RESULTS 11u
 
 void main() {
     uint i = invocation();
@@ -124,4 +158,6 @@ void main() {
     samples[RESULTS * i + 6u] = repeated(x);
     samples[RESULTS * i + 7u] = switched(x);
     samples[RESULTS * i + 8u] = floated(x);
+    samples[RESULTS * i + 9u] = computed(x);
+    samples[RESULTS * i + 10u] = skipped(x);
 }

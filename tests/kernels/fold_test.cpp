@@ -20,7 +20,7 @@ using Words = std::vector<std::uint32_t>;
 constexpr std::uint32_t fold_words[] = {
 #include "fold.spv.inc"
 };
-constexpr std::uint32_t items = 192, results = 9;  // of fold.comp
+constexpr std::uint32_t items = 192, results = 11;  // of fold.comp
 constexpr std::uint32_t node_bits = 20;
 
 class FoldedKernels : public GpuTest {
