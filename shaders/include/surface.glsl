@@ -149,7 +149,7 @@ vec3 bent_normal(Hit hit, vec3 front_normal, uint texture_number, float scale, v
 
 // Turns the tangent of the surface to where the facets of the material are wider, in the frame that normal textures are
 // in: of the texture coordinates of the normal texture, else of the anisotropy texture, else of the first set. Without
-// such a frame the material has no anisotropy.
+// such a frame the material has no anisotropy. texel: of the anisotropy texture, where there is one.
 void set_tangent(Hit hit, vec3 texel, inout Surface surface, inout SurfaceMaterial material) {
     bool second_uv = false;
     vec2 direction = vec2(1.0, 0.0);
@@ -188,7 +188,7 @@ bool is_read(int kind) {
 
 // The texels of a material at the coordinates of both sets, by their kind; white where it has none. All lanes run what
 // one of them runs: a loop over the textures that there are looks up as many as the material with the most has, and is
-// compiled once.
+// compiled once. Arrays are indexed by constants alone, once loops are unrolled: registers, not memory.
 void read_textures(SurfaceMaterial material, vec4 coordinates, out vec4 texels[TEXTURE_COUNT]) {
     uint there = 0u;
     for (int kind = 0; kind < TEXTURE_COUNT; ++kind) {

@@ -18,8 +18,8 @@ SEARCHES(STORES)
 // Goes on with the path until it ends or is out of steps.
 void follow_path(inout EyePath path) {
     while (bounces_of(path.at.flags) < params.max_depth && path.at.met < MOST_MET) {
+        bool fresh = path.steps == int(params.step_budget);
         path.steps -= vertex_steps();
-        bool fresh = path.steps + vertex_steps() == int(params.step_budget);
         Hit hit;
         uint found = trace(path.at.origin, path.at.direction, path.steps, hit);
         if (found == TRACE_UNFINISHED) {
@@ -60,8 +60,8 @@ void follow_path(inout EyePath path) {
 // Traces the rays to the lights that the path has asked for, if any.
 void follow_light_rays(inout EyePath path) {
     while (has_light_ray(path.light_rays)) {
+        bool fresh = path.steps == int(params.step_budget);
         path.steps -= vertex_steps();
-        bool fresh = path.steps + vertex_steps() == int(params.step_budget);
         LightRay ray = path.light_rays.of[0];
         Hit hit;
         uint found = trace(ray.origin, ray.direction, path.steps, hit);

@@ -158,6 +158,7 @@ void main() {
     uint rays = 0u;
     int steps = int(params.step_budget);
     while (state.done < launch.paths) {
+        bool fresh = steps == int(params.step_budget);
         steps -= vertex_steps();
         if (steps < 0) {
             block_after(PASS_TRACE);
@@ -172,7 +173,6 @@ void main() {
         }
         vec3 origin = shadow ? light_ray.origin : state.origin;
         vec3 direction = shadow ? light_ray.direction : state.direction;
-        bool fresh = steps + vertex_steps() == int(params.step_budget);
         Hit hit;
         uint found = trace(origin, direction, steps, hit);
         if (found == TRACE_UNFINISHED) {

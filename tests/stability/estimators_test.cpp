@@ -48,7 +48,7 @@ TEST_P(Estimators, TenThousandIterations) {
     std::vector<gpu::PixelState> before;
     for (int step = 0; step < 100; ++step) {
         run.integrator.run(100);
-        const auto pixels = run.integrator.buffer(Binding::pixels).download<gpu::PixelState>(64);
+        const auto pixels = run.all<gpu::PixelState>(Binding::pixels);
         for (std::size_t i = 0; i < pixels.size(); ++i) {
             ASSERT_TRUE(std::isfinite(pixels[i].radius2) && pixels[i].radius2 >= 0.0f && pixels[i].radius2 < 4.0f)
                 << "radius^2 " << pixels[i].radius2 << " of pixel " << i << " after " << (step + 1) * 100

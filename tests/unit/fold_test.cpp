@@ -4,6 +4,7 @@
 #include "vk/fold.h"
 
 #include <algorithm>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,15 @@ namespace vkcppm::test {
 namespace {
 
 using Words = std::vector<std::uint32_t>;
+
+/// Calls `take` with every module: its kernel, and its estimator or the first where it is of all.
+void for_each_module(const std::function<void(const KernelRow&, std::string_view)>& take) {
+    for (const KernelRow& row : kernel_rows()) {
+        for (const EstimatorRow& estimator : row.modules == Modules::each ? estimators() : estimators().first(1)) {
+            take(row, estimator.name);
+        }
+    }
+}
 
 Words words_of_kernel(KernelId kernel, std::string_view estimator = "cppm") {
     const auto words = words_of(kernel, estimator);
@@ -78,32 +88,27 @@ void expect_folded(const Words& before, const Specialization& constants) {
 }
 
 TEST(FoldedModules, FoldsEveryKernelToAnyConstants) {
-    for (const KernelRow& row : kernel_rows()) {
-        for (const EstimatorRow& estimator : row.modules == Modules::each ? estimators() : estimators().first(1)) {
-            const Words before = words_of_kernel(row.id, estimator.name);
-            ASSERT_TRUE(has(before, is_to_specialise));
-            const auto all = spread();
-            for (std::size_t i = 0; i < all.size(); ++i) {
-                // Estimators differ in little that features decide.
-                if (i < 32 && estimator.name != estimators().front().name) continue;
-                SCOPED_TRACE(fmt::format("{} of {}, constants {}", row.name, estimator.name, i));
-                expect_folded(before, all[i]);
-            }
+    const auto all = spread();
+    for_each_module([&](const KernelRow& row, std::string_view estimator) {
+        const Words before = words_of_kernel(row.id, estimator);
+        ASSERT_TRUE(has(before, is_to_specialise));
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            // Estimators differ in little that features decide.
+            if (i < 32 && estimator != estimators().front().name) continue;
+            SCOPED_TRACE(fmt::format("{} of {}, constants {}", row.name, estimator, i));
+            expect_folded(before, all[i]);
         }
-    }
+    });
 }
 
 // spirv-val takes up to 0.2 s for a module.
 TEST(FoldedModules, LeavesValidModules) {
-    for (const KernelRow& row : kernel_rows()) {
-        for (const EstimatorRow& estimator : row.modules == Modules::each ? estimators() : estimators().first(1)) {
-            const auto features = FEATURE_AREA_LIGHTS | FEATURE_TRANSMISSION;
-            EXPECT_EQ(faults(folded(words_of_kernel(row.id, estimator.name), constants_of(features))), "")
-                << row.name << " of " << estimator.name;
-        }
-    }
+    const Specialization glass = constants_of(FEATURE_AREA_LIGHTS | FEATURE_TRANSMISSION);
+    for_each_module([&](const KernelRow& row, std::string_view estimator) {
+        EXPECT_EQ(faults(folded(words_of_kernel(row.id, estimator), glass)), "") << row.name << " of " << estimator;
+    });
+    const auto all = spread();
     for (const KernelId kernel : {KernelId::eye, KernelId::photon, KernelId::gather, KernelId::path}) {
-        const auto all = spread();
         for (std::size_t i = std::size_t(kernel) % 2; i < all.size(); i += 2) {
             EXPECT_EQ(faults(folded(words_of_kernel(kernel), all[i])), "") << row_of(kernel).name << ", " << i;
         }
