@@ -73,16 +73,16 @@ const char* unit(PunctualLight::Kind kind) { return kind == PunctualLight::Kind:
 
 double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
-template <typename Vector> Json json_of(const Vector& v) { return {v[0], v[1], v[2]}; }
+template <typename Vector> Json json_of_vector(const Vector& v) { return {v[0], v[1], v[2]}; }
 
-template <typename Vector> std::string text_of(const Vector& v) {
+template <typename Vector> std::string text_of_vector(const Vector& v) {
     return fmt::format("({:g}, {:g}, {:g})", v[0], v[1], v[2]);
 }
 
 Json json_of(const PunctualLight& light) {
-    Json json{{"name", light.name}, {"kind", kind_name(light.kind)}, {"intensity", json_of(light.intensity)}};
-    if (light.kind != PunctualLight::Kind::directional) json["position"] = json_of(light.position);
-    if (light.kind != PunctualLight::Kind::point) json["direction"] = json_of(light.direction);
+    Json json{{"name", light.name}, {"kind", kind_name(light.kind)}, {"intensity", json_of_vector(light.intensity)}};
+    if (light.kind != PunctualLight::Kind::directional) json["position"] = json_of_vector(light.position);
+    if (light.kind != PunctualLight::Kind::point) json["direction"] = json_of_vector(light.direction);
     if (light.range > 0.0) json["range"] = light.range;
     if (light.kind == PunctualLight::Kind::spot) {
         json["inner_cone_degrees"] = degrees(light.inner_cone);
@@ -92,10 +92,10 @@ Json json_of(const PunctualLight& light) {
 }
 
 std::string text_of(const PunctualLight& light) {
-    std::string text =
-        fmt::format("  {} '{}': {} {}", kind_name(light.kind), light.name, text_of(light.intensity), unit(light.kind));
-    if (light.kind != PunctualLight::Kind::directional) text += " at " + text_of(light.position);
-    if (light.kind != PunctualLight::Kind::point) text += " towards " + text_of(light.direction);
+    std::string text = fmt::format("  {} '{}': {} {}", kind_name(light.kind), light.name,
+                                   text_of_vector(light.intensity), unit(light.kind));
+    if (light.kind != PunctualLight::Kind::directional) text += " at " + text_of_vector(light.position);
+    if (light.kind != PunctualLight::Kind::point) text += " towards " + text_of_vector(light.direction);
     if (light.range > 0.0) text += fmt::format(", as far as {:g} m", light.range);
     if (light.kind == PunctualLight::Kind::spot) {
         text += fmt::format(", cone {:g} to {:g} degrees", degrees(light.inner_cone), degrees(light.outer_cone));
@@ -106,7 +106,7 @@ std::string text_of(const PunctualLight& light) {
 Json json_of(const Environment& environment) {
     return {{"width", environment.size.width},
             {"height", environment.size.height},
-            {"mean_radiance", json_of(mean_radiance(environment))}};
+            {"mean_radiance", json_of_vector(mean_radiance(environment))}};
 }
 
 /// What a render takes.
@@ -165,7 +165,8 @@ Json json_of(const Scene& scene, const std::vector<Feature>& features) {
     json["instances"] = scene.instances.size();
     json["shown_triangles"] = shown_triangles(scene);
     const SceneBox box = world_box(scene);
-    json["bounds"] = box.is_empty() ? Json() : Json{{"min", json_of(box.low)}, {"max", json_of(box.high)}};
+    json["bounds"] =
+        box.is_empty() ? Json() : Json{{"min", json_of_vector(box.low)}, {"max", json_of_vector(box.high)}};
     json["materials"] = Json::array();
     const std::vector<std::size_t> triangles = triangles_by_material(scene);
     const std::vector<SurfaceTraits> traits = traits_of(scene);
@@ -173,7 +174,7 @@ Json json_of(const Scene& scene, const std::vector<Feature>& features) {
         const Material& material = scene.materials[i];
         json["materials"].push_back({{"name", material.name},
                                      {"triangles", triangles[i]},
-                                     {"emission", json_of(material.emission)},
+                                     {"emission", json_of_vector(material.emission)},
                                      {"treatment", describe_material(material, traits[i])}});
     }
     json["images"] = Json::array();
@@ -190,7 +191,7 @@ Json json_of(const Scene& scene, const std::vector<Feature>& features) {
                                    {"yfov_degrees", camera.ymag ? Json() : Json(degrees(camera.yfov))},
                                    {"height", camera.ymag ? Json(2.0 * *camera.ymag) : Json()},
                                    {"aspect", camera.aspect ? Json(*camera.aspect) : Json()},
-                                   {"position", json_of(camera.to_world[3])}});
+                                   {"position", json_of_vector(camera.to_world[3])}});
     }
     json["features"] = Json::array();
     for (const Feature& feature : features) {
@@ -209,7 +210,7 @@ std::string plain_text(const Scene& scene, const std::vector<Feature>& features)
                        scene.meshes.size(), shown_triangles(scene));
     }
     if (const SceneBox box = world_box(scene); !box.is_empty()) {
-        fmt::format_to(out, "bounds {} to {} m\n", text_of(box.low), text_of(box.high));
+        fmt::format_to(out, "bounds {} to {} m\n", text_of_vector(box.low), text_of_vector(box.high));
     }
     fmt::format_to(out, "vertices with {}\n", fmt::join(vertex_attributes(scene), ", "));
     fmt::format_to(out, "{} materials\n", scene.materials.size());
@@ -228,7 +229,7 @@ std::string plain_text(const Scene& scene, const std::vector<Feature>& features)
     if (scene.environment) {
         const Extent size = scene.environment->size;
         fmt::format_to(out, "environment of {}x{}, mean radiance {} W m^-2 sr^-1\n", size.width, size.height,
-                       text_of(mean_radiance(*scene.environment)));
+                       text_of_vector(mean_radiance(*scene.environment)));
     }
     fmt::format_to(out, "{} punctual lights\n", scene.lights.size());
     for (const PunctualLight& light : scene.lights) text += text_of(light);
@@ -240,7 +241,7 @@ std::string plain_text(const Scene& scene, const std::vector<Feature>& features)
         fmt::format_to(
             out, "  {} '{}'{}: {}{} at {}\n", i, camera.name,
             camera.node.empty() || camera.node == camera.name ? "" : fmt::format(" of node '{}'", camera.node), height,
-            camera.aspect ? fmt::format(", aspect {:g},", *camera.aspect) : "", text_of(camera.to_world[3]));
+            camera.aspect ? fmt::format(", aspect {:g},", *camera.aspect) : "", text_of_vector(camera.to_world[3]));
     }
     fmt::format_to(out, "{} features, which its kernels are specialised to\n", features.size());
     for (const Feature& feature : features) fmt::format_to(out, "  {}: {}\n", feature.name, feature.reason);

@@ -18,8 +18,8 @@ using Json = nlohmann::ordered_json;
 
 const char* name_of(ThinGlass thin_glass) { return thin_glass == ThinGlass::solid ? "solid" : "thin"; }
 
-Json json_of(const auto& value) { return value; }
-Json json_of(const Extent& size) { return fmt::format("{}x{}", size.width, size.height); }
+Json json_of_setting(const auto& value) { return value; }
+Json json_of_setting(const Extent& size) { return fmt::format("{}x{}", size.width, size.height); }
 
 /// What of the scene was asked for beside its files, where that is not what is usual.
 Json chosen(const SceneOptions& options) {
@@ -54,7 +54,7 @@ Json settings_json(const Settings& settings, const std::function<bool(setting::K
     Json json;
     setting::for_each([&](const auto& row) {
         const auto* value = setting::given(settings.*row.member);
-        if (value && wanted(row.kind)) json[json_name(row.name)] = json_of(*value);
+        if (value && wanted(row.kind)) json[json_name(row.name)] = json_of_setting(*value);
     });
     return json;
 }

@@ -30,17 +30,17 @@ namespace vkcppm {
 namespace {
 
 namespace geometry = boost::geometry;
-using Point = geometry::model::point<double, 3, geometry::cs::cartesian>;
-using Box = geometry::model::box<Point>;
-using Entry = std::pair<Box, std::uint32_t>;  // of a triangle of the scene, or of a body
-using Tree = geometry::index::rtree<Entry, geometry::index::quadratic<16>>;
+using Point3 = geometry::model::point<double, 3, geometry::cs::cartesian>;
+using Box3 = geometry::model::box<Point3>;
+using Entry3 = std::pair<Box3, std::uint32_t>;  // of a triangle of the scene, or of a body
+using Tree = geometry::index::rtree<Entry3, geometry::index::quadratic<16>>;
 using Triangle3 = std::array<glm::dvec3, 3>;
 
 constexpr std::size_t most_solid_angles = std::size_t(1) << 26;  // seconds
 
-Box box_of(const glm::dvec3& low, const glm::dvec3& high) { return {{low.x, low.y, low.z}, {high.x, high.y, high.z}}; }
+Box3 box_of(const glm::dvec3& low, const glm::dvec3& high) { return {{low.x, low.y, low.z}, {high.x, high.y, high.z}}; }
 
-Box box_of(const Triangle3& p) {
+Box3 box_of(const Triangle3& p) {
     return box_of(glm::min(p[0], glm::min(p[1], p[2])), glm::max(p[0], glm::max(p[1], p[2])));
 }
 
@@ -70,7 +70,7 @@ public:
 
     /// Two shells that overlap or of which one is in the other; none where there are none.
     std::optional<std::pair<const Shell*, const Shell*>> nested() {
-        std::vector<Entry> boxes;
+        std::vector<Entry3> boxes;
         for (std::uint32_t i = 0; i < shells_.size(); ++i)
             boxes.emplace_back(box_of(shells_[i].low, shells_[i].high), i);
         const Tree tree(boxes);
@@ -95,14 +95,14 @@ private:
         const auto size = [](const Shell* s) { return std::pair(s->triangles.size(), s->triangles.front()); };
         std::erase_if(near, [&](const Shell* other) { return size(other) > size(&shell); });
         if (near.empty()) return nullptr;
-        std::vector<Entry> faces;
+        std::vector<Entry3> faces;
         for (const std::uint32_t i : shell.triangles) faces.emplace_back(box_of(corners_of(scene_, i)), i);
         const Tree tree(faces);
-        const Box whole = tree.bounds();
+        const Box3 whole = tree.bounds();
         for (const Shell* other : near) {
             for (const std::uint32_t k : other->triangles) {
                 const Triangle3 b = corners_of(scene_, k);
-                const Box box = box_of(b);
+                const Box3 box = box_of(b);
                 if (!geometry::intersects(box, whole)) continue;
                 for (auto entry = tree.qbegin(geometry::index::intersects(box)); entry != tree.qend(); ++entry) {
                     const Triangle3 a = corners_of(scene_, entry->second);
@@ -145,8 +145,8 @@ std::uint32_t material_of(const Scene& scene, const Shell& shell) {
 std::optional<std::pair<std::uint32_t, std::uint32_t>> nested_instances(const Scene& scene,
                                                                         std::span<const Shell> shells) {
     std::vector<std::uint32_t> solid(scene.meshes.size(), std::uint32_t(scene.materials.size()));
-    bool is_shared = false;     // some solid
-    std::vector<Entry> bodies;  // by material
+    bool is_shared = false;      // some solid
+    std::vector<Entry3> bodies;  // by material
     for (const Shell& shell : shells) {
         if (const auto mesh = mesh_of(scene, shell.triangles.front())) {
             solid[*mesh] = material_of(scene, shell);

@@ -30,7 +30,7 @@ struct Window {
     std::int64_t height() const { return std::int64_t(bottom) - top + 1; }
 };
 
-struct Part {
+struct HeaderPart {
     std::optional<Window> data;
     std::array<std::uint32_t, 2> tile{0, 0};  // width and height; 0: scan lines
     std::uint8_t compression = 0;
@@ -88,7 +88,7 @@ private:
     }
 
     void check_part() {
-        Part part;
+        HeaderPart part;
         for (std::string name = take_name(); !name.empty(); name = take_name()) {
             const std::string type = take_name();
             const auto size = take<std::int32_t>();
@@ -116,7 +116,7 @@ private:
     }
 
     /// False where a value of that type does not end after `size` bytes: OpenEXR would go on reading where it does.
-    bool skip(const std::string& type, std::int32_t size, Part& part) {
+    bool skip(const std::string& type, std::int32_t size, HeaderPart& part) {
         static const std::map<std::string, std::int32_t> sizes = {{"box2f", 16},
                                                                   {"box2i", 16},
                                                                   {"chromaticities", 32},
@@ -153,7 +153,7 @@ private:
         return type != "idmanifest";
     }
 
-    bool skip_channels(std::int32_t size, Part& part) {
+    bool skip_channels(std::int32_t size, HeaderPart& part) {
         constexpr std::streamoff rest = 12;  // of a channel: linearity, three bytes of nothing, sampling in x and y
         const std::streamoff end = std::streamoff(in_.tellg()) + size;
         while (!take_name().empty()) {
@@ -184,7 +184,7 @@ private:
     }
 
     /// There is an offset in the file for every chunk, a tile or some rows, and OpenEXR has memory for one of them.
-    void check_chunks(const Part& part) const {
+    void check_chunks(const HeaderPart& part) const {
         const auto width = std::uint64_t(part.data->width()), height = std::uint64_t(part.data->height());
         const bool is_tiled = part.tile[0] > 0 && part.tile[1] > 0;
         const std::uint64_t columns = is_tiled ? part.tile[0] : width;

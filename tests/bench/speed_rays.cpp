@@ -15,21 +15,18 @@
 #include "oracle/embree.h"
 #include "render/render.h"
 #include "render/scene_on_device.h"
+#include "support/device/trace_kernel.h"
 #include "vk/kernel.h"
 
 namespace vkcppm::bench {
 namespace {
 
-constexpr std::uint32_t trace_words[] = {
-#include "trace.spv.inc"
-};
 constexpr std::uint32_t stream_words[] = {
 #include "speed_stream.spv.inc"
 };
 
-constexpr std::uint32_t side = 512;            // of the camera's picture
-constexpr std::uint32_t rays_per_lane = 16;    // of speed_stream.comp
-constexpr std::uint32_t found_unfinished = 2;  // TRACE_UNFINISHED of shaders/include/traverse.glsl
+constexpr std::uint32_t side = 512;          // of the camera's picture
+constexpr std::uint32_t rays_per_lane = 16;  // of speed_stream.comp
 
 using Rays = std::vector<gpu::RayInput>;
 using Random = std::mt19937;
@@ -91,7 +88,7 @@ public:
           commands_(device, bindings_),
           buffers_(device, bindings_),
           on_device_(device, flat),
-          trace_(device, "trace", trace_words, scene_specialization(flat, 0)),
+          trace_(device, "trace", test::trace_words, scene_specialization(flat, 0)),
           stream_(device, "stream", stream_words, scene_specialization(flat, 0)) {
         params_ = scene_params(device, flat, scene.cameras.at(0), settings, false);
         on_device_.lend(buffers_);
@@ -157,7 +154,7 @@ double differing(const oracle::Embree& embree, const Rays& rays, const std::vect
     std::size_t count = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const auto hit = embree.nearest(rays[i].origin, rays[i].direction);
-        if (hits[i].found == found_unfinished || hit.has_value() != (hits[i].found != 0) ||
+        if (hits[i].found == test::found_unfinished || hit.has_value() != (hits[i].found != 0) ||
             (hit && std::abs(hit->t - hits[i].t) > 1e-4f)) {
             ++count;
         }

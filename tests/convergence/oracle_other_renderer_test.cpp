@@ -15,7 +15,7 @@
 namespace vkcppm::test {
 namespace {
 
-constexpr std::uint32_t samples = 512, side = 64, block = 8;
+constexpr std::uint32_t side = 64, block = 8;
 constexpr double level = 0.001;    // of the whole picture, Sidak-corrected over blocks and channels
 constexpr double noise = 0.02;     // largest standard error of a block against its mean or the picture's
 constexpr double rounding = 1e-4;  // relative, of a block: the other renderer computes in floats
@@ -43,8 +43,7 @@ TEST(OracleShared, CornellBoxOfRoughMetal) {
                error = shared_file("cornell-box_ref_stderr.exr");
     if (!scene || !picture || !error) GTEST_SKIP() << no_collections;
     const Image other = read_exr(*picture), other_error = read_exr(*error);
-    const auto paths =
-        oracle::path_trace(load_gltf(*scene), {.size = {side, side}, .samples = samples, .max_depth = 64});
+    const auto paths = oracle::path_trace(load_gltf(*scene), {.size = {side, side}, .samples = 512, .max_depth = 64});
     ASSERT_EQ(other.extent.width % side, 0u);
     ASSERT_EQ(other.extent.width, other.extent.height);
     const std::uint32_t scale = other.extent.width / side, blocks = side / block;

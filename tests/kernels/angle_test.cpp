@@ -21,7 +21,7 @@ constexpr std::uint32_t angle_words[] = {
 #include "angle.spv.inc"
 };
 
-constexpr std::size_t samples = 100000;
+constexpr std::size_t tried = 100000;
 
 class Angle : public GpuTest {
 protected:
@@ -44,7 +44,7 @@ TEST_F(Angle, IsThatOfThePlane) {
     for (const float x : {-1.0f, 0.0f, 1e-20f, 1.0f, 3.0f}) {
         for (const float y : {-3.0f, -1.0f, -1e-20f, 0.0f, 1.0f}) points.emplace_back(x, y);
     }
-    while (points.size() < samples) {
+    while (points.size() < tried) {
         const float angle = turn(random), length = std::exp2(exponent(random));
         points.emplace_back(length * std::cos(angle), length * std::sin(angle));
     }
@@ -78,7 +78,7 @@ TEST_F(Angle, HasTheSameBitsEverywhere) {
     std::mt19937 random(4);
     std::uniform_real_distribution<float> small(-1.0f, 1.0f);
     std::vector<glm::vec2> points;
-    while (points.size() < samples) {
+    while (points.size() < tried) {
         const float large = (random() & 1 ? 1.0f : -1.0f) * std::exp2(float(int(random() % 9) - 4));
         const float other = std::abs(large) * small(random);
         points.push_back(random() & 1 ? glm::vec2(large, other) : glm::vec2(other, large));

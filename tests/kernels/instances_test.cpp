@@ -18,21 +18,16 @@
 #include "oracle/intersect.h"
 #include "scene/instances.h"
 #include "support/device/gpu.h"
+#include "support/device/trace_kernel.h"
 #include "support/scenes/instanced.h"
 #include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {
 
-constexpr std::uint32_t trace_words[] = {
-#include "trace.spv.inc"
-};
 constexpr std::uint32_t surface_words[] = {
 #include "surface.spv.inc"
 };
-
-constexpr std::uint32_t found_hit = 1;  // TRACE_HIT of shaders/include/traverse.glsl
-constexpr std::uint32_t step_budget = 7000;
 
 using Random = std::mt19937;
 

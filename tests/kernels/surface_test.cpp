@@ -13,6 +13,7 @@
 #include "kernels/probe.h"
 #include "oracle/octahedral.h"
 #include "support/device/gpu.h"
+#include "support/device/trace_kernel.h"
 #include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
@@ -21,8 +22,6 @@ namespace {
 constexpr std::uint32_t surface_words[] = {
 #include "surface.spv.inc"
 };
-
-constexpr std::uint32_t found_hit = 1;  // TRACE_HIT of shaders/include/traverse.glsl
 
 class SurfaceAtHit : public GpuTest {};
 

@@ -18,17 +18,11 @@
 #include "oracle/embree.h"
 #include "oracle/intersect.h"
 #include "support/device/gpu.h"
+#include "support/device/trace_kernel.h"
 #include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {
-
-constexpr std::uint32_t trace_words[] = {
-#include "trace.spv.inc"
-};
-
-constexpr std::uint32_t found_hit = 1, found_unfinished = 2;  // TRACE_* of shaders/include/traverse.glsl
-constexpr std::uint32_t step_budget = 7000;                   // below the loop limit of every driver, for eight lanes
 
 // A ray passes an edge undecidably close within this distance, frame units: rounding of the intersection.
 constexpr double edge_distance = 1e-6;

@@ -7,6 +7,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "oracle/channels.h"
 #include "oracle/fresnel.h"
 
 namespace vkcppm::oracle {
@@ -17,8 +18,6 @@ using std::numbers::pi;
 constexpr double coat_reflectance = 0.04;  // KHR_materials_clearcoat: index 1.5
 constexpr double least_across = 1e-3;      // width across the tangent where there is anisotropy
 constexpr double least_albedo = 0.05;      // of a rough lobe in the choice: its estimate may be far off
-
-double brightest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
 
 double mean(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
 
@@ -117,7 +116,7 @@ bool Bsdf::is_delta(Lobe lobe) const {
 bool Bsdf::has(Lobe lobe) const {
     const double opaque = (1.0 - metallic) * (1.0 - transmission);
     switch (lobe) {
-        case Lobe::diffuse: return opaque > 0.0 && brightest(base_color) > 0.0;
+        case Lobe::diffuse: return opaque > 0.0 && largest(base_color) > 0.0;
         case Lobe::reflection: return metallic > 0.0 || transmits() || (opaque > 0.0 && specular > 0.0);
         case Lobe::transmission: return transmits() && ior != 0.0;
         case Lobe::coat: return coat > 0.0;
@@ -167,7 +166,7 @@ glm::dvec3 Bsdf::fresnel_glass(double cosine) const {
 }
 
 /// Of all channels alike, as much as the brightest leaves.
-double Bsdf::through_glass(double cosine) const { return 1.0 - brightest(fresnel_glass(cosine)); }
+double Bsdf::through_glass(double cosine) const { return 1.0 - largest(fresnel_glass(cosine)); }
 
 glm::dvec3 Bsdf::fresnel_coat(double cosine) const {
     return filmed(fresnel_schlick(dielectric0() * specular, specular, cosine), specular, dielectric0(), cosine);
@@ -232,7 +231,7 @@ glm::dvec3 Bsdf::evaluate(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi)
         const glm::dvec3 sum = wo + wi;
         const double length = glm::length(sum);
         const double oh = length > 0.0 ? std::min(std::abs(glm::dot(wo, sum)) / length, 1.0) : 0.0;
-        return share * base_color / pi * (1.0 - brightest(fresnel_coat(oh))) * below_coat(oh);
+        return share * base_color / pi * (1.0 - largest(fresnel_coat(oh))) * below_coat(oh);
     }
     if (co <= 0.0) return black;
     const Facets facets = facets_of(lobe);
@@ -271,7 +270,7 @@ Bsdf::Deltas Bsdf::delta_lobes(const glm::dvec3& wo) const {
     Deltas deltas;
     const auto add = [&](Lobe lobe, const glm::dvec3& direction, const glm::dvec3& weight) {
         const bool lost = lobe != Lobe::transmission && !transmits() && glm::dot(direction, geometric_normal) <= 0.0;
-        if (!lost && brightest(weight) > 0.0) {
+        if (!lost && largest(weight) > 0.0) {
             deltas.push_back({lobe, direction, weight});
         }
     };
@@ -302,7 +301,7 @@ Bsdf::Choice Bsdf::choice(const glm::dvec3& wo) const {
     };
     if (rough(Lobe::diffuse)) {
         at(Lobe::diffuse) = least_albedo + below * (1.0 - metallic) * (1.0 - transmission) * mean(base_color) *
-                                               (1.0 - brightest(fresnel_coat(co)));
+                                               (1.0 - largest(fresnel_coat(co)));
     }
     if (rough(Lobe::reflection)) at(Lobe::reflection) = least_albedo + below * mean(reflectance(co));
     if (rough(Lobe::transmission)) {

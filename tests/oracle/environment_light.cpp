@@ -6,13 +6,12 @@
 #include <numbers>
 
 #include "oracle/bsdf.h"
+#include "oracle/channels.h"
 
 namespace vkcppm::oracle {
 namespace {
 
 using std::numbers::pi;
-
-double brightest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
 
 }  // namespace
 
@@ -24,7 +23,7 @@ EnvironmentLight::EnvironmentLight(const std::optional<Environment>& environment
     for (std::size_t i = 0; i < radiance_.size(); ++i) {
         const double row = double(i / size_.width);
         const double high = std::cos(pi * row / size_.height), low = std::cos(pi * (row + 1.0) / size_.height);
-        cumulative_.push_back(total_ += brightest(radiance_[i]) * 2.0 * pi / size_.width * (high - low));
+        cumulative_.push_back(total_ += largest(radiance_[i]) * 2.0 * pi / size_.width * (high - low));
     }
 }
 
@@ -52,7 +51,7 @@ glm::dvec3 EnvironmentLight::sample(std::mt19937_64& random) const {
 }
 
 double EnvironmentLight::density(const glm::dvec3& direction) const {
-    return empty() ? 0.0 : brightest(radiance(direction)) / total_;
+    return empty() ? 0.0 : largest(radiance(direction)) / total_;
 }
 
 }  // namespace vkcppm::oracle

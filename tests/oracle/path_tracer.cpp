@@ -15,6 +15,7 @@
 
 #include "oracle/area_lights.h"
 #include "oracle/bvh.h"
+#include "oracle/channels.h"
 #include "oracle/dispersion.h"
 #include "oracle/environment_light.h"
 #include "oracle/surface.h"
@@ -23,8 +24,6 @@ namespace vkcppm::oracle {
 namespace {
 
 constexpr std::uint32_t roulette_depth = 5;
-
-double brightest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
 
 struct Tracer {
     const Scene& scene;
@@ -254,7 +253,7 @@ struct Tracer {
             }
             if (glm::dot(next->direction, surface.geometric_normal) < 0.0) path.media = behind;
             if (depth >= roulette_depth) {
-                const double survival = std::min(1.0, brightest(path.throughput));
+                const double survival = std::min(1.0, largest(path.throughput));
                 if (uniform(random) >= survival) break;
                 path.throughput /= survival;
             }

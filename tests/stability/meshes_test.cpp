@@ -13,17 +13,12 @@
 #include "kernels/probe.h"
 #include "stability/table.h"
 #include "support/device/rig.h"
+#include "support/device/trace_kernel.h"
 #include "support/scenes/materials.h"
 #include "support/scenes/shapes.h"
 
 namespace vkcppm::test {
 namespace {
-
-constexpr std::uint32_t trace_words[] = {
-#include "trace.spv.inc"
-};
-
-constexpr std::uint32_t step_budget = 7000;  // as of tests/kernels/trace_test.cpp
 
 using Random = std::mt19937;
 

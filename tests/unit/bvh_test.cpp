@@ -15,12 +15,12 @@
 namespace vkcppm {
 namespace {
 
-using Corners = std::vector<std::array<glm::vec3, 3>>;
+using TriangleList = std::vector<std::array<glm::vec3, 3>>;
 
-Corners random_triangles(std::size_t count, float size, std::uint32_t seed) {
+TriangleList random_triangles(std::size_t count, float size, std::uint32_t seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> place(-0.8f, 0.8f), offset(-size, size);
-    Corners triangles(count);
+    TriangleList triangles(count);
     for (auto& triangle : triangles) {
         const glm::vec3 centre(place(random), place(random), place(random));
         for (auto& corner : triangle) corner = centre + glm::vec3(offset(random), offset(random), offset(random));
@@ -37,7 +37,7 @@ struct Walk {
 };
 
 /// Checks the subtree of a node; returns the entries that a traversal of it can need.
-std::uint32_t walk_node(const Bvh& bvh, const Corners& triangles, std::uint32_t index, int depth, Walk& walk,
+std::uint32_t walk_node(const Bvh& bvh, const TriangleList& triangles, std::uint32_t index, int depth, Walk& walk,
                         std::vector<std::uint32_t>& below) {
     EXPECT_LT(index, bvh.nodes.size());
     EXPECT_LE(depth, 64) << "the tree does not end";
@@ -79,7 +79,7 @@ std::uint32_t walk_node(const Bvh& bvh, const Corners& triangles, std::uint32_t 
     return deepest + (children > 1 ? 1 : 0);
 }
 
-Walk check(const Corners& triangles) {
+Walk check(const TriangleList& triangles) {
     const Bvh bvh = build_bvh(triangles);
     Walk walk;
     walk.times.resize(triangles.size());
@@ -108,12 +108,12 @@ TEST(Bvh, HoldsEveryTriangleOnceInsideItsBoxes) {
 TEST(Bvh, HoldsFlatThinAndFarTriangles) {
     std::mt19937 random(3);
     std::uniform_real_distribution<float> place(-1.0f, 1.0f);
-    Corners flat = random_triangles(1000, 0.05f, 4);
+    TriangleList flat = random_triangles(1000, 0.05f, 4);
     for (std::size_t i = 0; i < flat.size(); ++i) {
         for (auto& corner : flat[i]) corner[int(i % 3)] = i % 2 == 0 ? 0.25f : 1.0f;  // planes, one at the very end
     }
     check(flat);
-    Corners points(300), mixed = random_triangles(1000, 1e-6f, 5);
+    TriangleList points(300), mixed = random_triangles(1000, 1e-6f, 5);
     for (auto& triangle : points) triangle.fill(glm::vec3(place(random), place(random), place(random)));
     check(points);
     for (std::size_t i = 0; i < mixed.size(); i += 50) {
@@ -124,8 +124,8 @@ TEST(Bvh, HoldsFlatThinAndFarTriangles) {
 
 TEST(Bvh, IdenticalTrianglesEndInABoundedDepth) {
     const std::size_t count = 100000;
-    const Walk walk =
-        check(Corners(count, {glm::vec3(0.1f, 0.2f, 0.3f), glm::vec3(0.2f, 0.2f, 0.3f), glm::vec3(0.1f, 0.4f, 0.3f)}));
+    const Walk walk = check(
+        TriangleList(count, {glm::vec3(0.1f, 0.2f, 0.3f), glm::vec3(0.2f, 0.2f, 0.3f), glm::vec3(0.1f, 0.4f, 0.3f)}));
     // Halves by count: 2^17 > 10^5, so the binary tree has at most 17 levels, and a node waits with three children.
     EXPECT_LE(walk.depth, 17);
     EXPECT_LE(walk.stack, 3u * 17u);
@@ -133,7 +133,7 @@ TEST(Bvh, IdenticalTrianglesEndInABoundedDepth) {
 
 TEST(Bvh, AGeometricRowDoesNotBecomeAList) {
     // Centres at 2^-i: each split by area cuts off one triangle, until halves by count take over.
-    Corners row;
+    TriangleList row;
     for (int i = 0; i < 3000; ++i) {
         const float x = std::ldexp(1.0f, -(i % 100)), size = 0.1f * x;
         row.push_back({glm::vec3(x, 0, 0), glm::vec3(x + size, size, 0), glm::vec3(x, 0, size)});
@@ -143,7 +143,7 @@ TEST(Bvh, AGeometricRowDoesNotBecomeAList) {
 }
 
 TEST(Bvh, BuildsTheSameTreeOnAnyNumberOfThreads) {
-    const Corners triangles = random_triangles(30000, 0.02f, 6);
+    const TriangleList triangles = random_triangles(30000, 0.02f, 6);
     const Bvh first = build_bvh(triangles);
     for (const int threads : {1, 2, 3, 8, 8, 8}) {
         Bvh again;

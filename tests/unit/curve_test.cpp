@@ -12,7 +12,7 @@ namespace {
 
 using Values = std::vector<double>;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// y = factor x^exponent.
@@ -59,7 +59,7 @@ TEST(Slope, IsTheLeastSquaresOneOfTheLogarithms) {
 }
 
 TEST(Slope, LeavesOutWhatHasNoLogarithm) {
-    const Values x{0.0, 1.0, 2.0, -4.0, 4.0, 8.0, 9.0}, y{5.0, 8.0, 4.0, 1.0, 2.0, 0.0, nan};
+    const Values x{0.0, 1.0, 2.0, -4.0, 4.0, 8.0, 9.0}, y{5.0, 8.0, 4.0, 1.0, 2.0, 0.0, no_value};
     const auto slope = log_log_slope(x, y);
     ASSERT_TRUE(slope);
     EXPECT_NEAR(*slope, -1.0, 1e-14);
@@ -112,7 +112,7 @@ TEST(EqualError, OfACurveThatBeginsBelowIsItsBeginning) {
 TEST(EqualError, IsAbsentWhereTheCurveNeverGetsThere) {
     EXPECT_FALSE(first_at_or_below({}, {}, 1.0));
     EXPECT_FALSE(first_at_or_below(Values{1.0, 2.0}, Values{3.0, 2.0}, 1.0));
-    EXPECT_FALSE(first_at_or_below(Values{1.0, 2.0}, Values{nan, nan}, 1.0));
+    EXPECT_FALSE(first_at_or_below(Values{1.0, 2.0}, Values{no_value, no_value}, 1.0));
     EXPECT_FALSE(first_at_or_below(Values{1.0, 2.0}, Values{3.0, 2.0}, 0.0));
     EXPECT_FALSE(first_at_or_below(Values{1.0}, Values{infinity}, 1.0));
 }

@@ -19,11 +19,11 @@
 namespace vkcppm {
 namespace {
 
-constexpr Extent extent{40, 30};
+constexpr Extent size{40, 30};
 
 /// A multiple of 2^-16 in [0, 1), by the finalizer of MurmurHash3.
 double uniform(std::uint32_t x, std::uint32_t y, std::uint32_t c, std::uint32_t seed) {
-    std::uint32_t h = x + extent.width * (y + extent.height * (c + 3 * seed));
+    std::uint32_t h = x + size.width * (y + size.height * (c + 3 * seed));
     h = (h ^ (h >> 16)) * 0x85ebca6bu;
     h = (h ^ (h >> 13)) * 0xc2b2ae35u;
     return double((h ^ (h >> 16)) >> 16) / 65536.0;
@@ -34,7 +34,7 @@ using Function = std::function<double(std::uint32_t x, std::uint32_t y, std::uin
 double ramp(std::uint32_t x, std::uint32_t y, std::uint32_t c) {
     if (x >= 12 && x < 18 && y >= 6 && y < 12) return 24.0;
     return (0.25 + 0.75 * (x % 8) / 8) * std::exp2(int(x / 8) - 3) *
-           (0.5 + double(y * (c + 1) % extent.height) / extent.height);
+           (0.5 + double(y * (c + 1) % size.height) / size.height);
 }
 
 double board(std::uint32_t x, std::uint32_t y, std::uint32_t c) {
@@ -54,9 +54,9 @@ const std::map<std::string, std::pair<Function, Function>> cases = {
 };
 
 Image picture(const Function& function) {
-    Image image{extent, {}};
-    for (std::uint32_t y = 0; y < extent.height; ++y) {
-        for (std::uint32_t x = 0; x < extent.width; ++x) {
+    Image image{size, {}};
+    for (std::uint32_t y = 0; y < size.height; ++y) {
+        for (std::uint32_t x = 0; x < size.width; ++x) {
             image.rgb.emplace_back(float(function(x, y, 0)), float(function(x, y, 1)), float(function(x, y, 2)));
         }
     }
@@ -68,9 +68,9 @@ Image picture(const Function& function) {
 void expect_same(const Flip& flip, const nlohmann::json& wanted) {
     EXPECT_NEAR(flip.mean, wanted["mean"].get<double>(), 2e-5);
     std::size_t i = 0;
-    for (std::uint32_t y = 3; y < extent.height; y += 8) {
-        for (std::uint32_t x = 2; x < extent.width; x += 9, ++i) {
-            EXPECT_NEAR(flip.error[y * extent.width + x], wanted["errors"][i].get<double>(), 2e-4) << x << "," << y;
+    for (std::uint32_t y = 3; y < size.height; y += 8) {
+        for (std::uint32_t x = 2; x < size.width; x += 9, ++i) {
+            EXPECT_NEAR(flip.error[y * size.width + x], wanted["errors"][i].get<double>(), 2e-4) << x << "," << y;
         }
     }
     EXPECT_EQ(i, wanted["errors"].size());

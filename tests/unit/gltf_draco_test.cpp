@@ -23,19 +23,18 @@ using test::expect_bad_scene;
 using test::GltfBuilder;
 using test::load;
 
-constexpr const char* name = "KHR_draco_mesh_compression";
+constexpr const char* draco = "KHR_draco_mesh_compression";
 
-json& primitive(GltfBuilder& b) { return b.document["meshes"][0]["primitives"][0]; }
-json& extension(GltfBuilder& b) { return primitive(b)["extensions"][name]; }
+json& extension(GltfBuilder& b) { return b.primitive()["extensions"][draco]; }
 json& accessor(GltfBuilder& b, const char* attribute) {
-    return b.document["accessors"][primitive(b)["attributes"][attribute].get<std::size_t>()];
+    return b.document["accessors"][b.primitive()["attributes"][attribute].get<std::size_t>()];
 }
 
 /// A grid with a texture, so that its texture coordinates are read.
 GltfBuilder grid() {
     GltfBuilder b = test::grid(6);
     const int texture = b.texture(test::one_texel_png({1, 2, 3, 255}));
-    primitive(b)["material"] =
+    b.primitive()["material"] =
         b.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}});
     return b;
 }
@@ -74,7 +73,7 @@ TEST(Draco, LoadsLikeTheSameMeshUncompressed) {
     for (const bool is_sequential : {false, true}) {
         SCOPED_TRACE(is_sequential);
         const Scene scene = load(compressed({.sequential = is_sequential}));
-        EXPECT_EQ(test::warnings_with(scene, {name}), 0) << test::all_warnings(scene);
+        EXPECT_EQ(test::warnings_with(scene, {draco}), 0) << test::all_warnings(scene);
         EXPECT_EQ(triangles_of(scene), twin);
     }
 }
@@ -103,13 +102,13 @@ TEST(Draco, SkinsAndMorphTargetsStandOnIt) {
         weights.push_back({0.75f, 0.25f, 0.0f, 0.0f});
         moves.push_back({0.0f, 0.0f, float(i)});
     }
-    json& attributes = primitive(twin)["attributes"];
+    json& attributes = twin.primitive()["attributes"];
     attributes["JOINTS_0"] = twin.accessor(twin.view(joints), "VEC4", 5121, 9);
     attributes["WEIGHTS_0"] = twin.accessor(twin.view(weights), "VEC4", 5126, 9);
     twin.add("nodes", {{"translation", {0, 0, 2}}});
     twin.add("nodes", {{"scale", {2, 1, 1}}});
     twin.document["nodes"][0]["skin"] = twin.add("skins", {{"joints", {1, 2}}});
-    primitive(twin)["targets"] = {{{"POSITION", twin.float3(moves)}}};
+    twin.primitive()["targets"] = {{{"POSITION", twin.float3(moves)}}};
     twin.document["meshes"][0]["weights"] = {0.5};
     GltfBuilder b = twin;
     test::compress_by_draco(b, 0, {.sequential = true});
@@ -127,7 +126,7 @@ TEST(Draco, WhatAFileKeepsForOtherProgramsIsNotRead) {
     // The same accessor of another primitive means its own data.
     b = compressed();
     b.document["meshes"][0]["primitives"].push_back(
-        {{"attributes", {{"POSITION", primitive(b)["attributes"]["POSITION"]}}}});
+        {{"attributes", {{"POSITION", b.primitive()["attributes"]["POSITION"]}}}});
     accessor(b, "POSITION")["bufferView"] = b.view(std::vector<float>(3 * 49));
     EXPECT_EQ(triangles_of(load(b)), right) << "49 vertices at the origin, whose triangles are dropped";
 }
@@ -135,7 +134,7 @@ TEST(Draco, WhatAFileKeepsForOtherProgramsIsNotRead) {
 TEST(Draco, AMeshThatNoNodeShowsIsNotDecoded) {
     GltfBuilder b = compressed();
     json broken = b.document["meshes"][0];
-    broken["primitives"][0]["extensions"][name]["attributes"]["POSITION"] = 77;
+    broken["primitives"][0]["extensions"][draco]["attributes"]["POSITION"] = 77;
     b.document["meshes"].push_back(broken);
     EXPECT_EQ(load(b).triangles.size(), 72u);
 }
@@ -143,7 +142,7 @@ TEST(Draco, AMeshThatNoNodeShowsIsNotDecoded) {
 TEST(Draco, AStripIsTheListThatItWasCompressedAs) {
     GltfBuilder b = compressed();
     const auto right = triangles_of(load(b));
-    primitive(b)["mode"] = 5;
+    b.primitive()["mode"] = 5;
     EXPECT_EQ(triangles_of(load(b)), right);
 }
 
@@ -161,7 +160,7 @@ GltfBuilder with_data(GltfBuilder b, const std::string& bytes) {
 }
 
 const std::string object = "meshes[0].primitives[0]";
-const std::string extension_object = object + ".extensions." + name;
+const std::string extension_object = object + ".extensions." + draco;
 
 TEST(HostileDraco, EveryTruncation) {
     for (const bool is_sequential : {false, true}) {
@@ -220,7 +219,7 @@ TEST(HostileDraco, AttributesThatItsDataHasNot) {
     b = compressed();
     const std::string odd = "A\n" + std::string(5000, 'B');  // of which a message quotes what fits into a line
     extension(b)["attributes"][odd] = 9;
-    primitive(b)["attributes"][odd] = 0;
+    b.primitive()["attributes"][odd] = 0;
     expect_bad_scene(b.gltf(), {extension_object + ".attributes[\"A\\nBBB", "BBB...] is 9"});
     b = compressed();
     std::swap(extension(b)["attributes"]["NORMAL"], extension(b)["attributes"]["TEXCOORD_0"]);
@@ -232,7 +231,7 @@ TEST(HostileDraco, AccessorsThatItsDataIsNot) {
     accessor(b, "NORMAL")["count"] = 50;
     expect_bad_scene(b.gltf(), {".count (\"NORMAL\" of meshes[0].primitives[0]) is 50", "its Draco data has 49"});
     b = compressed();
-    json& indices = b.document["accessors"][primitive(b)["indices"].get<std::size_t>()];
+    json& indices = b.document["accessors"][b.primitive()["indices"].get<std::size_t>()];
     indices["count"] = 219;
     expect_bad_scene(b.gltf(), {".count (indices of meshes[0].primitives[0]) is 219", "its Draco data has 216"});
     b = compressed();
@@ -242,8 +241,8 @@ TEST(HostileDraco, AccessorsThatItsDataIsNot) {
     accessor(b, "POSITION")["type"] = "MAT2";
     expect_bad_scene(b.gltf(), {"accessors[", "].type is \"MAT2\"", "POSITION", "has 3 components"});
     b = compressed();
-    primitive(b)["mode"] = 1;
-    expect_bad_scene(b.gltf(), {object + ".mode is 1", name, "needs 4 or 5"});
+    b.primitive()["mode"] = 1;
+    expect_bad_scene(b.gltf(), {object + ".mode is 1", draco, "needs 4 or 5"});
     b = compressed();
     extension(b)["bufferView"] = 99;
     expect_bad_scene(b.gltf(), {extension_object + ".bufferView is 99"});
@@ -251,11 +250,11 @@ TEST(HostileDraco, AccessorsThatItsDataIsNot) {
 
 TEST(HostileDraco, ValuesAreNamedByTheFilesOwnAccessors) {
     GltfBuilder b = test::grid(2);
-    const int position = primitive(b)["attributes"]["POSITION"];
+    const int position = b.primitive()["attributes"]["POSITION"];
     std::vector<test::Float3> positions(9, {0, 0, 0});
     positions[4][1] = std::numeric_limits<float>::infinity();
-    primitive(b)["attributes"]["POSITION"] = b.float3(positions);
-    const int own = primitive(b)["attributes"]["POSITION"];
+    b.primitive()["attributes"]["POSITION"] = b.float3(positions);
+    const int own = b.primitive()["attributes"]["POSITION"];
     ASSERT_NE(own, position);
     test::compress_by_draco(b, 0, {.sequential = true});
     expect_bad_scene(b.gltf(), {fmt::format("accessors[{}] element 4 (POSITION of {})", own, object), "finite"});
@@ -264,16 +263,16 @@ TEST(HostileDraco, ValuesAreNamedByTheFilesOwnAccessors) {
 // What each of them claims is within the limit, all together are not.
 TEST(HostileDraco, ManyPrimitivesOfOneMesh) {
     GltfBuilder b = test::grid(100);
-    primitive(b)["attributes"] = {{"POSITION", primitive(b)["attributes"]["POSITION"]}};
+    b.primitive()["attributes"] = {{"POSITION", b.primitive()["attributes"]["POSITION"]}};
     GltfBuilder small = test::one_triangle();  // without the bytes that were compressed
     test::compress_by_draco(b, 0, {.position_bits = 1});
     const std::string data = data_of(b);
     small.document["accessors"] = b.document["accessors"];
     for (json& accessor : small.document["accessors"]) accessor.erase("bufferView");
-    primitive(small) = primitive(b);
+    small.primitive() = b.primitive();
     small = with_data(small, data);
     EXPECT_FALSE(load(small).triangles.empty());
-    small.document["meshes"][0]["primitives"] = std::vector<json>(60, primitive(small));
+    small.document["meshes"][0]["primitives"] = std::vector<json>(60, small.primitive());
     expect_bad_scene(small.gltf(), {"bytes that Draco decodes to", "the limit is ", " bytes"});
 }
 

@@ -30,10 +30,6 @@ using test::warnings_with;
 using Float2 = std::array<float, 2>;
 using Float4 = std::array<float, 4>;
 
-constexpr float float_nan = std::numeric_limits<float>::quiet_NaN();
-
-json& primitive(GltfBuilder& builder) { return builder.document["meshes"][0]["primitives"][0]; }
-
 /// An attribute of the one primitive: elements of N components of type T, padded to 4 bytes.
 template <typename T, std::size_t N>
 int add_attribute(GltfBuilder& builder, const char* name, int component, bool normalized,
@@ -45,18 +41,18 @@ int add_attribute(GltfBuilder& builder, const char* name, int component, bool no
     builder.document["bufferViews"][view]["byteStride"] = stride;
     const int accessor = builder.accessor(view, fmt::format("VEC{}", N).c_str(), component, values.size());
     builder.document["accessors"][accessor]["normalized"] = normalized;
-    primitive(builder)["attributes"][name] = accessor;
+    builder.primitive()["attributes"][name] = accessor;
     return accessor;
 }
 
 void add_normals(GltfBuilder& builder) {
-    primitive(builder)["attributes"]["NORMAL"] = builder.float3({{0, 0, 1}, {0, 0, 1}, {0, 0, 1}});
+    builder.primitive()["attributes"]["NORMAL"] = builder.float3({{0, 0, 1}, {0, 0, 1}, {0, 0, 1}});
 }
 
 /// A material of the primitive with a texture of one set; a normal map where `is_normal`.
 void add_texture(GltfBuilder& builder, int set, bool is_normal = false) {
     const json info = {{"index", builder.texture(test::one_texel_png({9, 9, 9, 9}))}, {"texCoord", set}};
-    primitive(builder)["material"] =
+    builder.primitive()["material"] =
         builder.add("materials", is_normal ? json{{"normalTexture", info}}
                                            : json{{"pbrMetallicRoughness", {{"baseColorTexture", info}}}});
 }
@@ -115,7 +111,7 @@ TEST(GltfUv, AreReadWhereATextureNeedsThem) {
 
 TEST(GltfUv, AreZeroForPrimitivesThatHaveNone) {
     GltfBuilder builder = test::one_triangle();
-    const json bare = primitive(builder);
+    const json bare = builder.primitive();
     builder.document["meshes"][0]["primitives"] = {bare, bare, bare};
     json& textured = builder.document["meshes"][0]["primitives"][1];
     textured["attributes"]["TEXCOORD_0"] =
@@ -133,9 +129,9 @@ TEST(GltfUv, SeparateTheVerticesOfPrimitivesThatShareTheRest) {
     add_normals(builder);
     add_texture(builder, 0);
     add_attribute<float, 2>(builder, "TEXCOORD_0", 5126, false, {{0, 0}, {1, 0}, {0, 1}});
-    const json one = primitive(builder);
+    const json one = builder.primitive();
     add_attribute<float, 2>(builder, "TEXCOORD_0", 5126, false, {{5, 5}, {6, 5}, {5, 6}});
-    const json other = primitive(builder);
+    const json other = builder.primitive();
     builder.document["meshes"][0]["primitives"] = {one, other, one};
     const Scene scene = load(builder);
     EXPECT_EQ(scene.uv[0], (std::vector<glm::vec2>{{0, 0}, {1, 0}, {0, 1}, {5, 5}, {6, 5}, {5, 6}}));
@@ -145,7 +141,7 @@ TEST(GltfUv, SeparateTheVerticesOfPrimitivesThatShareTheRest) {
 TEST(GltfUv, AreZeroWithAWarningWhereTheyAreNoNumbers) {
     GltfBuilder builder = test::one_triangle();
     add_texture(builder, 0);
-    add_attribute<float, 2>(builder, "TEXCOORD_0", 5126, false, {{float_nan, 1}, {1e30f, 2}, {3, 4}});
+    add_attribute<float, 2>(builder, "TEXCOORD_0", 5126, false, {{test::float_nan, 1}, {1e30f, 2}, {3, 4}});
     const Scene scene = load(builder);
     EXPECT_EQ(at_corners(scene, scene.uv[0]), (std::array<glm::vec2, 3>{glm::vec2(0), glm::vec2(0), glm::vec2(3, 4)}));
     EXPECT_ONE_WARNING(scene, "accessors[1]", "texture coordinates");
@@ -186,9 +182,9 @@ TEST(GltfColor, WhiteThroughoutIsNone) {
 
 TEST(GltfColor, IsWhiteForPrimitivesThatHaveNone) {
     GltfBuilder builder = test::one_triangle();
-    const json bare = primitive(builder);
+    const json bare = builder.primitive();
     add_attribute<float, 3>(builder, "COLOR_0", 5126, false, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
-    builder.document["meshes"][0]["primitives"] = {bare, primitive(builder), bare};
+    builder.document["meshes"][0]["primitives"] = {bare, builder.primitive(), bare};
     const Scene scene = load(builder);
     const glm::vec4 white(1), black(0, 0, 0, 1);
     EXPECT_EQ(scene.colors, (std::vector<glm::vec4>{white, white, white, black, black, black, white, white, white}));
@@ -238,7 +234,7 @@ TEST(GltfTangent, TurnsWithItsNodeAndFlipsItsSignInAMirror) {
 }
 
 TEST(GltfTangent, WithoutDirectionIsNone) {
-    const Scene scene = load(with_tangents({{0, 0, 0, 1}, {float_nan, 0, 0, 1}, {1, 0, 0, 1}}));
+    const Scene scene = load(with_tangents({{0, 0, 0, 1}, {test::float_nan, 0, 0, 1}, {1, 0, 0, 1}}));
     EXPECT_EQ(at_corners(scene, scene.tangents),
               (std::array<glm::vec4, 3>{glm::vec4(0), glm::vec4(0), glm::vec4(1, 0, 0, 1)}));
 }
@@ -255,7 +251,7 @@ TEST(GltfTangent, ReadsQuantizedOnes) {
 TEST(GltfTangent, IsLeftOutWithoutANormalMapOrNormals) {
     GltfBuilder builder = with_tangents({{1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}});
     EXPECT_FALSE(load(builder).tangents.empty());
-    primitive(builder)["attributes"].erase("NORMAL");
+    builder.primitive()["attributes"].erase("NORMAL");
     const Scene flat = load(builder);
     EXPECT_TRUE(flat.tangents.empty());
     EXPECT_FALSE(flat.uv[0].empty());
@@ -267,7 +263,7 @@ TEST(GltfTangent, IsLeftOutWithoutANormalMapOrNormals) {
 TEST(GltfTangent, AndAllElseIsCopiedToAVertexOfItsOwnNormal) {
     GltfBuilder builder = with_tangents({{1, 0, 0, 1}, {0, 1, 0, 1}, {1, 0, 0, -1}});
     add_attribute<float, 3>(builder, "COLOR_0", 5126, false, {{0, 0, 0}, {0.5f, 0, 0}, {0, 0, 0.5f}});
-    primitive(builder)["attributes"]["NORMAL"] = builder.float3({{0, 0, 1}, {0, 0, 0}, {0, 0, 1}});
+    builder.primitive()["attributes"]["NORMAL"] = builder.float3({{0, 0, 1}, {0, 0, 0}, {0, 0, 1}});
     const Scene scene = load(builder);
     EXPECT_EQ(scene.positions.size(), 4u);
     EXPECT_EQ(scene.triangles.at(0).vertex[1], 3u);
@@ -286,7 +282,7 @@ GltfBuilder with_targets() {
     const int lift = builder.float3({{0, 0, 1}, {0, 0, 1}, {0, 0, 1}});
     const int pull = builder.float3({{0, 0, 0}, {4, 0, 0}, {0, 0, 0}});
     const int bend = builder.float3({{0, 0, 0}, {1, 0, 0}, {0, 0, 0}});
-    primitive(builder)["targets"] = {{{"POSITION", lift}}, {{"POSITION", pull}, {"NORMAL", bend}}};
+    builder.primitive()["targets"] = {{{"POSITION", lift}}, {{"POSITION", pull}, {"NORMAL", bend}}};
     return builder;
 }
 
@@ -322,7 +318,7 @@ TEST(GltfMorph, ReadsASparseTargetWithoutABase) {
                          {"values", {{"bufferView", values}}}};
     const int target =
         builder.add("accessors", {{"componentType", 5126}, {"type", "VEC3"}, {"count", 3}, {"sparse", sparse}});
-    primitive(builder)["targets"] = {{{"POSITION", target}}};
+    builder.primitive()["targets"] = {{{"POSITION", target}}};
     builder.document["meshes"][0]["weights"] = {1};
     const Scene scene = load(builder);
     EXPECT_EQ(scene.positions.at(2), glm::dvec3(0, 4, 0));
@@ -333,13 +329,13 @@ TEST(HostileMorph, IsRefusedByALineThatNamesIt) {
     builder.document["meshes"][0]["weights"] = {1, 1, 1};
     expect_bad_scene(builder.gltf(), {"number of weights of meshes[0].primitives[0] is 3", "2 targets"});
     builder.document["meshes"][0]["weights"] = {1};
-    primitive(builder)["targets"][0]["POSITION"] = 99;
+    builder.primitive()["targets"][0]["POSITION"] = 99;
     expect_bad_scene(builder.gltf(), {"targets[0][\"POSITION\"] is 99", "accessors has"});
-    primitive(builder)["targets"][0]["POSITION"] = builder.float3({{0, 0, 0}});
+    builder.primitive()["targets"][0]["POSITION"] = builder.float3({{0, 0, 0}});
     expect_bad_scene(builder.gltf(), {"(POSITION of meshes[0].primitives[0].targets[0]) is 1", "POSITION has 3"});
-    primitive(builder)["targets"][0]["POSITION"] = builder.float3({{0, 0, 0}, {float_nan, 0, 0}, {0, 0, 0}});
+    builder.primitive()["targets"][0]["POSITION"] = builder.float3({{0, 0, 0}, {test::float_nan, 0, 0}, {0, 0, 0}});
     expect_bad_scene(builder.gltf(), {"accessors[0] element 1", "nan", "finite"});
-    primitive(builder)["targets"] = {7};
+    builder.primitive()["targets"] = {7};
     expect_bad_scene(builder.gltf(), {"primitives[0].targets[0] is 7", "object"});
 }
 
@@ -412,7 +408,7 @@ TEST(HostileInstances, AreRefusedByALineThatNamesThem) {
     const int zeros = builder.accessor(builder.view(std::vector<Float4>{{0, 0, 0, 0}}), "VEC4", 5126, 1);
     instance_attributes(builder) = {{"ROTATION", zeros}};
     expect_bad_scene(builder.gltf(), {"element 0 of nodes[0].extensions.EXT_mesh_gpu_instancing", "unit quaternion"});
-    instance_attributes(builder) = {{"TRANSLATION", builder.float3({{0, float_nan, 0}})}};
+    instance_attributes(builder) = {{"TRANSLATION", builder.float3({{0, test::float_nan, 0}})}};
     expect_bad_scene(builder.gltf(), {"world transform of element 0 of nodes[0]", "nan", "finite"});
     instance_attributes(builder) = {{"TRANSLATION", 99}};
     expect_bad_scene(builder.gltf(), {"[\"TRANSLATION\"] is 99", "accessors has"});
@@ -432,10 +428,10 @@ TEST(HostileInstances, AreLimitedBeforeAnyIsRead) {
     builder.document["nodes"][1] = builder.document["nodes"][0];
     expect_bad_scene(builder.gltf(), {"number of instances is 524288; the limit is ", " bytes"});
     builder.document["nodes"].erase(1);
-    primitive(builder)["indices"] =
+    builder.primitive()["indices"] =
         builder.add("accessors", {{"componentType", 5123}, {"type", "SCALAR"}, {"count", 3000}});
     EXPECT_TRUE(load(builder).triangles.empty()) << "the mesh is stored once, and its triangles have no area";
-    primitive(builder)["material"] = builder.add("materials", {{"emissiveFactor", {1, 1, 1}}});  // a lamp is copied
+    builder.primitive()["material"] = builder.add("materials", {{"emissiveFactor", {1, 1, 1}}});  // a lamp is copied
     expect_bad_scene(builder.gltf(), {"number of triangles is 262144000; the limit is ", " bytes"});
 }
 
@@ -445,14 +441,14 @@ TEST(HostileAttribute, IsRefusedByALineThatNamesIt) {
     const int one = add_attribute<float, 2>(builder, "TEXCOORD_0", 5126, false, {{0, 0}});
     expect_bad_scene(builder.gltf(),
                      {fmt::format("accessors[{}].count (TEXCOORD_0 of meshes[0].primitives[0]) is 1", one)});
-    primitive(builder)["attributes"]["TEXCOORD_0"] = 0;
+    builder.primitive()["attributes"]["TEXCOORD_0"] = 0;
     expect_bad_scene(builder.gltf(), {"accessors[0].type is of 3 components", "TEXCOORD_0 needs 2"});
-    primitive(builder)["attributes"].erase("TEXCOORD_0");
-    primitive(builder)["attributes"]["COLOR_0"] = one;
+    builder.primitive()["attributes"].erase("TEXCOORD_0");
+    builder.primitive()["attributes"]["COLOR_0"] = one;
     expect_bad_scene(builder.gltf(), {"(COLOR_0 of meshes[0].primitives[0]) is 1", "POSITION has 3"});
     add_attribute<float, 2>(builder, "COLOR_0", 5126, false, {{0, 0}, {0, 0}, {0, 0}});
     expect_bad_scene(builder.gltf(), {"type is of 2 components", "COLOR_0 needs 4"});
-    add_attribute<float, 3>(builder, "COLOR_0", 5126, false, {{0, 0, 0}, {0, float_nan, 0}, {0, 0, 0}});
+    add_attribute<float, 3>(builder, "COLOR_0", 5126, false, {{0, 0, 0}, {0, test::float_nan, 0}, {0, 0, 0}});
     expect_bad_scene(builder.gltf(), {"element 1 (COLOR_0 of meshes[0].primitives[0])", "nan", "numbers"});
 }
 

@@ -32,7 +32,7 @@ Scene load(const GltfBuilder& builder, Sharing sharing) {
 }
 
 /// Corners and normals of triangles, in an order that does not hang on that of nodes.
-std::vector<std::array<double, 6>> corners(const Scene& scene) {
+std::vector<std::array<double, 6>> sorted_corners(const Scene& scene) {
     std::vector<std::array<double, 6>> all;
     for (const Triangle& triangle : scene.triangles) {
         for (const std::uint32_t v : triangle.vertex) {
@@ -46,7 +46,7 @@ std::vector<std::array<double, 6>> corners(const Scene& scene) {
 }
 
 void expect_same(const Scene& got, const Scene& want) {
-    const auto a = corners(got), b = corners(want);
+    const auto a = sorted_corners(got), b = sorted_corners(want);
     ASSERT_EQ(a.size(), b.size());
     std::size_t differing = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {

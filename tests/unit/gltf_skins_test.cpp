@@ -45,7 +45,7 @@ void bind_at(GltfBuilder& builder, const std::vector<Float3>& inverse_translatio
         builder.accessor(builder.view(matrices), "MAT4", 5126, inverse_translations.size());
 }
 
-void expect_corners(const Scene& scene, const std::vector<glm::dvec3>& expected) {
+void expect_positions(const Scene& scene, const std::vector<glm::dvec3>& expected) {
     ASSERT_EQ(scene.positions.size(), expected.size());
     for (std::size_t i = 0; i < expected.size(); ++i) {
         EXPECT_LE(glm::length(scene.positions[i] - expected[i]), 1e-6)
@@ -59,7 +59,7 @@ TEST(Skins, JointsPlaceTheMeshAndItsNodeDoesNot) {
     builder.document["nodes"][1]["translation"] = {0, 0, 2};
     const Scene scene = load(builder);
     EXPECT_TRUE(scene.warnings.size() == 1) << test::all_warnings(scene);  // there is no camera
-    expect_corners(scene, {{0, 0, 2}, {1, 0, 2}, {0, 1, 2}});
+    expect_positions(scene, {{0, 0, 2}, {1, 0, 2}, {0, 1, 2}});
 }
 
 TEST(Skins, AJointTurnsAboutWhereItIsBound) {
@@ -68,13 +68,13 @@ TEST(Skins, AJointTurnsAboutWhereItIsBound) {
     const double half = std::numbers::sqrt2 / 2.0;
     builder.document["nodes"][1] = {{"translation", {1, 0, 0}}, {"rotation", {0, 0, half, half}}};
     // About (1, 0, 0) by 90 degrees: x becomes y, y becomes -x.
-    expect_corners(load(builder), {{1, -1, 0}, {1, 0, 0}, {0, -1, 0}});
+    expect_positions(load(builder), {{1, -1, 0}, {1, 0, 0}, {0, -1, 0}});
 }
 
 TEST(Skins, WeightsBlendAndAreTakenInProportion) {
     GltfBuilder builder = bound(Joints(3, {0, 1, 1, 0}), {{1, 1, 0, 0}, {0.25f, 0.75f, 0, 0}, {0, 2, 2, 0}});
     builder.document["nodes"][2]["translation"] = {0, 0, 4};
-    expect_corners(load(builder), {{0, 0, 2}, {1, 0, 3}, {0, 1, 4}});
+    expect_positions(load(builder), {{0, 0, 2}, {1, 0, 3}, {0, 1, 4}});
 }
 
 TEST(Skins, AllSetsOfJointsCount) {
@@ -83,7 +83,7 @@ TEST(Skins, AllSetsOfJointsCount) {
     attributes["JOINTS_1"] = builder.accessor(builder.view(Joints(3, {1, 0, 0, 0})), "VEC4", 5121, 3);
     attributes["WEIGHTS_1"] = builder.accessor(builder.view(Weights(3, {1, 0, 0, 0})), "VEC4", 5126, 3);
     builder.document["nodes"][2]["translation"] = {0, 0, 4};
-    expect_corners(load(builder), {{0, 0, 2}, {1, 0, 2}, {0, 1, 2}});
+    expect_positions(load(builder), {{0, 0, 2}, {1, 0, 2}, {0, 1, 2}});
 }
 
 TEST(Skins, NormalsFollowAndAMirrorTurnsTheCorners) {
@@ -108,8 +108,9 @@ TEST(Skins, NodesOfOneMeshFollowSkinsOfTheirOwn) {
     builder.add("nodes", {{"mesh", 0}, {"translation", {0, 0, 9}}});
     builder.document["nodes"][1]["translation"] = {0, 0, 1};
     builder.document["nodes"][2]["translation"] = {0, 0, 2};
-    expect_corners(load(builder),
-                   {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {0, 0, 2}, {1, 0, 2}, {0, 1, 2}, {0, 0, 9}, {1, 0, 9}, {0, 1, 9}});
+    expect_positions(
+        load(builder),
+        {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {0, 0, 2}, {1, 0, 2}, {0, 1, 2}, {0, 0, 9}, {1, 0, 9}, {0, 1, 9}});
 }
 
 TEST(Skins, WhatIsOddIsTold) {
@@ -118,20 +119,20 @@ TEST(Skins, WhatIsOddIsTold) {
     outside.document["nodes"][0]["translation"] = {0, 0, 3};
     const Scene ignored = load(outside);
     EXPECT_ONE_WARNING(ignored, "skins[0] (nodes[1])", "not in the scene");
-    expect_corners(ignored, {{0, 0, 3}, {1, 0, 3}, {0, 1, 3}});
+    expect_positions(ignored, {{0, 0, 3}, {1, 0, 3}, {0, 1, 3}});
 
     GltfBuilder weightless = bound(Joints(3, {1, 0, 0, 0}), Weights(3, {0, 0, 0, 0}));
     weightless.document["nodes"][1]["translation"] = {0, 0, 1};
     const Scene first = load(weightless);
     EXPECT_ONE_WARNING(first, "without weights");
-    expect_corners(first, {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}});
+    expect_positions(first, {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}});
 
     GltfBuilder bare = bound_to_first();
     bare.document["meshes"][0]["primitives"][0]["attributes"].erase("WEIGHTS_0");
     bare.document["nodes"][0]["translation"] = {0, 0, 3};
     const Scene unbound = load(bare);
     EXPECT_ONE_WARNING(unbound, "no joints and weights");
-    expect_corners(unbound, {{0, 0, 3}, {1, 0, 3}, {0, 1, 3}});
+    expect_positions(unbound, {{0, 0, 3}, {1, 0, 3}, {0, 1, 3}});
 }
 
 TEST(Skins, WhatCannotBeIsRefused) {

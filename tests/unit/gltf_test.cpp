@@ -27,8 +27,6 @@ using test::load;
 using test::load_text;
 using test::warnings_with;
 
-constexpr float float_nan = std::numeric_limits<float>::quiet_NaN();
-
 std::string text_of(const glm::dvec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
 
 void expect_near(const glm::dvec3& value, const glm::dvec3& expected, double tolerance, const std::string& what) {
@@ -322,7 +320,7 @@ TEST(Gltf, GivesFlatNormalsAndUnsharedVerticesWhereTheyAreMissing) {
 
 TEST(Gltf, ReplacesNormalsWithoutDirectionByTheGeometricOne) {
     GltfBuilder builder = test::one_triangle();
-    const int normals = builder.float3({{0, 0, 0}, {float_nan, 0, 0}, {0, 3, 4}});
+    const int normals = builder.float3({{0, 0, 0}, {test::float_nan, 0, 0}, {0, 3, 4}});
     builder.document["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = normals;
     const Scene scene = load(builder);
     ASSERT_EQ(scene.triangles.size(), 1u);

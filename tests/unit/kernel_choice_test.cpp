@@ -55,8 +55,8 @@ TEST(KernelChoice, SoftwareVulkanHasOneFormAndLightKernelsToo) {
     }
     EXPECT_EQ(forms_of(row_of(KernelId::eye), three), (std::vector<KernelForm>{{64, false}, {32, false}}))
         << "eye paths always wait";
-    EXPECT_EQ(text_of({128, false}), "groups of 128");
-    EXPECT_EQ(text_of({64, true}), "groups of 64, lanes wait");
+    EXPECT_EQ(text_of(KernelForm{128, false}), "groups of 128");
+    EXPECT_EQ(text_of(KernelForm{64, true}), "groups of 64, lanes wait");
 }
 
 }  // namespace

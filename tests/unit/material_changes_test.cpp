@@ -36,7 +36,7 @@ Scene load_with(const GltfBuilder& builder, const std::vector<std::string>& word
 }
 
 /// What is said about a word that is refused as wrong usage; empty where it is not.
-std::string refusal(const std::string& word) {
+std::string refusal_of(const std::string& word) {
     const auto error = test::thrown_by([&] { load_with(with_materials(), {word}); });
     return error && error->code() == ExitCode::usage ? error->what() : "";
 }
@@ -95,24 +95,25 @@ TEST(MaterialChanges, MakeAnotherScene) {
 }
 
 TEST(MaterialChanges, AreRefusedWithWhatThereIs) {
-    EXPECT_NE(refusal("gloss:ior=1.3").find("'gloss' is none of the materials of "), std::string::npos)
-        << refusal("gloss:ior=1.3");
-    EXPECT_NE(refusal("gloss:ior=1.3").find("1 'glass'"), std::string::npos);
-    EXPECT_NE(refusal("3:ior=1.3").find("2 'wall: left'"), std::string::npos);
-    EXPECT_NE(refusal("glass:index=1.3").find("'index' is none of baseColorFactor, metallicFactor"), std::string::npos);
-    EXPECT_NE(refusal("glass:ior=0.5").find("ior '0.5' is not 1 or more"), std::string::npos);
-    EXPECT_NE(refusal("glass:roughnessFactor=1.5").find("roughnessFactor '1.5' is not 0..1"), std::string::npos);
-    EXPECT_NE(refusal("glass:attenuationDistance=0").find("'0' is not above 0"), std::string::npos);
+    EXPECT_NE(refusal_of("gloss:ior=1.3").find("'gloss' is none of the materials of "), std::string::npos)
+        << refusal_of("gloss:ior=1.3");
+    EXPECT_NE(refusal_of("gloss:ior=1.3").find("1 'glass'"), std::string::npos);
+    EXPECT_NE(refusal_of("3:ior=1.3").find("2 'wall: left'"), std::string::npos);
+    EXPECT_NE(refusal_of("glass:index=1.3").find("'index' is none of baseColorFactor, metallicFactor"),
+              std::string::npos);
+    EXPECT_NE(refusal_of("glass:ior=0.5").find("ior '0.5' is not 1 or more"), std::string::npos);
+    EXPECT_NE(refusal_of("glass:roughnessFactor=1.5").find("roughnessFactor '1.5' is not 0..1"), std::string::npos);
+    EXPECT_NE(refusal_of("glass:attenuationDistance=0").find("'0' is not above 0"), std::string::npos);
     for (const char* value : {"0.5", "1,1", "1,1,1,1", "1,2,1", "1,nan,1", "1,,1", ""}) {
-        EXPECT_NE(refusal(std::string("glass:baseColorFactor=") + value).find("' is not R,G,B of 0..1"),
+        EXPECT_NE(refusal_of(std::string("glass:baseColorFactor=") + value).find("' is not R,G,B of 0..1"),
                   std::string::npos)
             << value;
     }
     for (const char* value : {"", "x", "1x", "nan", "inf", "1,1", "1e300"}) {
-        EXPECT_NE(refusal(std::string("glass:ior=") + value).find("' is not 1 or more"), std::string::npos) << value;
+        EXPECT_NE(refusal_of(std::string("glass:ior=") + value).find("' is not 1 or more"), std::string::npos) << value;
     }
     for (const char* word : {"", "glass", "glass:", ":ior=1.3", "ior=1.3", "glass:ior"}) {
-        EXPECT_NE(refusal(word).find("it is not MATERIAL:member=value"), std::string::npos) << word;
+        EXPECT_NE(refusal_of(word).find("it is not MATERIAL:member=value"), std::string::npos) << word;
     }
 }
 

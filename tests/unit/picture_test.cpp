@@ -20,12 +20,12 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
     return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-Texels decode(const std::string& file) { return decode_picture(bytes_of(file)); }
+Texels texels_of(const std::string& file) { return decode_picture(bytes_of(file)); }
 
 /// Why a file is refused; empty where it is not.
 std::string refusal(const std::string& file) {
     try {
-        decode(file);
+        texels_of(file);
     } catch (const std::runtime_error& error) {
         return error.what();
     }
@@ -34,34 +34,34 @@ std::string refusal(const std::string& file) {
 
 TEST(Picture, ReadsEveryLayoutOfPng) {
     const Extent two = {2, 1};
-    EXPECT_EQ(decode(test::encode_png(two, {PNG_COLOR_TYPE_RGBA, 8}, {1, 2, 3, 4, 5, 6, 7, 8})),
+    EXPECT_EQ(texels_of(test::encode_png(two, {PNG_COLOR_TYPE_RGBA, 8}, {1, 2, 3, 4, 5, 6, 7, 8})),
               (Texels{1, 2, 3, 4, 5, 6, 7, 8}));
-    EXPECT_EQ(decode(test::encode_png(two, {PNG_COLOR_TYPE_RGB, 8}, {1, 2, 3, 4, 5, 6})),
+    EXPECT_EQ(texels_of(test::encode_png(two, {PNG_COLOR_TYPE_RGB, 8}, {1, 2, 3, 4, 5, 6})),
               (Texels{1, 2, 3, 255, 4, 5, 6, 255}));
-    EXPECT_EQ(decode(test::encode_png(two, {PNG_COLOR_TYPE_GRAY, 8}, {7, 200})),
+    EXPECT_EQ(texels_of(test::encode_png(two, {PNG_COLOR_TYPE_GRAY, 8}, {7, 200})),
               (Texels{7, 7, 7, 255, 200, 200, 200, 255}));
-    EXPECT_EQ(decode(test::encode_png(two, {PNG_COLOR_TYPE_GRAY_ALPHA, 8}, {7, 8, 200, 0})),
+    EXPECT_EQ(texels_of(test::encode_png(two, {PNG_COLOR_TYPE_GRAY_ALPHA, 8}, {7, 8, 200, 0})),
               (Texels{7, 7, 7, 8, 200, 200, 200, 0}));
-    EXPECT_EQ(decode(test::encode_png(two, {PNG_COLOR_TYPE_GRAY, 1}, {0b10000000})),
+    EXPECT_EQ(texels_of(test::encode_png(two, {PNG_COLOR_TYPE_GRAY, 1}, {0b10000000})),
               (Texels{255, 255, 255, 255, 0, 0, 0, 255}));
-    EXPECT_EQ(decode(test::encode_png(two, {PNG_COLOR_TYPE_GRAY, 2}, {0b01110000})),
+    EXPECT_EQ(texels_of(test::encode_png(two, {PNG_COLOR_TYPE_GRAY, 2}, {0b01110000})),
               (Texels{85, 85, 85, 255, 255, 255, 255, 255}));
 }
 
 TEST(Picture, RoundsSixteenBitsToEight) {
     // v / 257, rounded: 0x7fff is 127.498, 0x8000 is 127.502, 0x0081 is 0.502.
     const Texels rows = {0x7f, 0xff, 0x80, 0x00, 0xff, 0xff, 0x00, 0x81};
-    EXPECT_EQ(decode(test::encode_png({1, 1}, {PNG_COLOR_TYPE_RGBA, 16}, rows)), (Texels{127, 128, 255, 1}));
+    EXPECT_EQ(texels_of(test::encode_png({1, 1}, {PNG_COLOR_TYPE_RGBA, 16}, rows)), (Texels{127, 128, 255, 1}));
 }
 
 TEST(Picture, ReadsAPaletteWithTransparencyAndATransparentGrey) {
     PngFormat palette{PNG_COLOR_TYPE_PALETTE, 4};
     palette.palette = {10, 20, 30, 40, 50, 60};
     palette.palette_alpha = {99};  // the second entry is opaque
-    EXPECT_EQ(decode(test::encode_png({2, 1}, palette, {0x01})), (Texels{10, 20, 30, 99, 40, 50, 60, 255}));
+    EXPECT_EQ(texels_of(test::encode_png({2, 1}, palette, {0x01})), (Texels{10, 20, 30, 99, 40, 50, 60, 255}));
     PngFormat gray{PNG_COLOR_TYPE_GRAY, 8};
     gray.transparent_gray = 7;
-    EXPECT_EQ(decode(test::encode_png({2, 1}, gray, {7, 8})), (Texels{7, 7, 7, 0, 8, 8, 8, 255}));
+    EXPECT_EQ(texels_of(test::encode_png({2, 1}, gray, {7, 8})), (Texels{7, 7, 7, 0, 8, 8, 8, 255}));
 }
 
 TEST(Picture, ReadsAnInterlacedPngWithTheFirstRowOnTop) {
@@ -70,13 +70,13 @@ TEST(Picture, ReadsAnInterlacedPngWithTheFirstRowOnTop) {
     PngFormat format{PNG_COLOR_TYPE_RGBA, 8, true};
     const std::string file = test::encode_png({9, 7}, format, rgba);
     EXPECT_EQ(picture_size(bytes_of(file)), (Extent{9, 7}));
-    EXPECT_EQ(decode(file), rgba);
+    EXPECT_EQ(texels_of(file), rgba);
 }
 
 TEST(Picture, IgnoresTheGammaOfAPng) {
     PngFormat format{PNG_COLOR_TYPE_GRAY, 8};
     format.gamma = 1.0;
-    EXPECT_EQ(decode(test::encode_png({1, 1}, format, {100})), (Texels{100, 100, 100, 255}));
+    EXPECT_EQ(texels_of(test::encode_png({1, 1}, format, {100})), (Texels{100, 100, 100, 255}));
 }
 
 TEST(Picture, ReadsAJpeg) {
@@ -90,7 +90,7 @@ TEST(Picture, ReadsAJpeg) {
     }
     const std::string file = test::encode_jpeg({8, 16}, red_above_blue);
     EXPECT_EQ(picture_size(bytes_of(file)), (Extent{8, 16}));
-    const Texels texels = decode(file);
+    const Texels texels = texels_of(file);
     ASSERT_EQ(texels.size(), 4u * 8 * 16);
     for (std::size_t i = 0; i < 8 * 16; ++i) {
         for (std::size_t c = 0; c < 3; ++c) {
@@ -98,7 +98,7 @@ TEST(Picture, ReadsAJpeg) {
         }
         EXPECT_EQ(texels[4 * i + 3], 255) << "texel " << i;
     }
-    const Texels gray = decode(test::encode_jpeg({8, 8}, Texels(64, 77), true));
+    const Texels gray = texels_of(test::encode_jpeg({8, 8}, Texels(64, 77), true));
     for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(int(gray[c]), c < 3 ? 77 : 255, 1) << "channel " << c;
 }
 
@@ -112,10 +112,10 @@ TEST(Picture, ReadsAWebp) {
     const std::string lossless = test::encode_webp({16, 32}, rgba);
     EXPECT_TRUE(is_webp(bytes_of(lossless)));
     EXPECT_EQ(picture_size(bytes_of(lossless)), (Extent{16, 32}));
-    EXPECT_EQ(decode(lossless), rgba);
+    EXPECT_EQ(texels_of(lossless), rgba);
     const std::string lossy = test::encode_webp({16, 32}, rgba, false);
     EXPECT_EQ(picture_size(bytes_of(lossy)), (Extent{16, 32}));
-    const Texels texels = decode(lossy);
+    const Texels texels = texels_of(lossy);
     ASSERT_EQ(texels.size(), rgba.size());
     for (std::size_t y : {2, 8, 24, 29}) {  // colours are stored at half the size, and mix where the halves meet
         for (std::size_t c = 0; c < 4; ++c) {

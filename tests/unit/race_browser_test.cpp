@@ -22,7 +22,6 @@ namespace vkcppm {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using test::all;
 using test::between;
 
 std::string without_tags(const std::string& html) { return std::regex_replace(html, std::regex("<[^>]*>"), " "); }
@@ -57,16 +56,16 @@ protected:
 void expect_plots(const std::string& page, const std::string& metric, std::size_t curves, std::size_t points) {
     for (const char* axis : {"iterations", "seconds"}) {
         const std::string plot = between(page, std::string("id=\"plot-") + axis + "\"", "</figure>");
-        EXPECT_EQ(all(plot, "data-metric=\"([a-z_]+)\""), std::vector<std::string>{metric}) << axis;
-        const std::vector<std::string> lines = all(plot, "<path class=\"line\"[^>]* d=\"([^\"]*)\"");
+        EXPECT_EQ(test::all(plot, "data-metric=\"([a-z_]+)\""), std::vector<std::string>{metric}) << axis;
+        const std::vector<std::string> lines = test::all(plot, "<path class=\"line\"[^>]* d=\"([^\"]*)\"");
         ASSERT_EQ(lines.size(), curves) << axis;
         for (const std::string& line : lines) {
             EXPECT_TRUE(std::regex_match(line, std::regex(R"(M-?\d+\.\d,-?\d+\.\d(L-?\d+\.\d,-?\d+\.\d)*)"))) << line;
-            EXPECT_EQ(all(line, R"((-?\d+\.\d),)").size(), points) << line;
+            EXPECT_EQ(test::all(line, R"((-?\d+\.\d),)").size(), points) << line;
         }
         EXPECT_EQ(plot.find("NaN"), std::string::npos) << axis;
         EXPECT_EQ(plot.find("Infinity"), std::string::npos) << axis;
-        EXPECT_EQ(all(plot, "class=\"slope\"[^>]*>(slope [^<]*)<").size(), curves) << axis;
+        EXPECT_EQ(test::all(plot, "class=\"slope\"[^>]*>(slope [^<]*)<").size(), curves) << axis;
     }
 }
 
@@ -85,7 +84,7 @@ TEST_F(RaceInBrowser, DrawsTenEntrants) {
         EXPECT_NE(page.find("class=\"tile\" data-name=\"" + name + "\""), std::string::npos) << name;
     }
     // Ten marks that differ.
-    std::vector<std::string> marks = all(between(page, "id=\"chips\"", "</div>"), "<path d=\"([^\"]*)\"");
+    std::vector<std::string> marks = test::all(between(page, "id=\"chips\"", "</div>"), "<path d=\"([^\"]*)\"");
     std::sort(marks.begin(), marks.end());
     EXPECT_EQ(marks.size(), 10u);
     EXPECT_TRUE(std::adjacent_find(marks.begin(), marks.end()) == marks.end());
@@ -94,7 +93,8 @@ TEST_F(RaceInBrowser, DrawsTenEntrants) {
 TEST_F(RaceInBrowser, NumbersAreThoseOfTheRecord) {
     write({"sppm", "cppm", "appm"});
     const std::string page = drawn("#metric=relmse");
-    EXPECT_EQ(all(page, "data-noise=\"([0-9.]*)\"").size(), 2u) << "the reference's own error, where that is known";
+    EXPECT_EQ(test::all(page, "data-noise=\"([0-9.]*)\"").size(), 2u)
+        << "the reference's own error, where that is known";
     const std::string table = between(page, "<table id=\"equal\">", "</table>");
     for (const Json& entrant : json_["entrants"]) {
         const std::string name = entrant["name"];
@@ -127,7 +127,7 @@ TEST_F(RaceInBrowser, TheAddressChoosesMetricViewCropAndCurves) {
     EXPECT_EQ(between(page, "<span id=\"crop-place\" class=\"quiet\">", "</span>"), "from column 2, row 0");
     const std::string tile = between(page, "class=\"tile\" data-name=\"appm\"", "</figure>");
     EXPECT_NE(between(tile, "class=\"frame\"", ">").find("left: 25%"), std::string::npos) << "2 of 8 columns";
-    const std::vector<std::string> shown = all(tile, "src=\"([^\"]*)\"");
+    const std::vector<std::string> shown = test::all(tile, "src=\"([^\"]*)\"");
     ASSERT_EQ(shown.size(), 2u) << "the picture and its crop";
     EXPECT_EQ(shown[0], shown[1]);
     const std::string whole = test::read_bytes(folder_ / "index.html");

@@ -14,30 +14,30 @@
 namespace vkcppm {
 namespace {
 
-using Words = std::vector<std::uint32_t>;
+using Module = std::vector<std::uint32_t>;
 
 /// An instruction: its code and its operands.
 struct Instruction {
     std::uint32_t code;
-    Words operands;
+    Module operands;
     bool operator==(const Instruction&) const = default;
 };
 
-std::vector<Instruction> instructions_of(const Words& words) {
+std::vector<Instruction> instructions_of(const Module& words) {
     std::vector<Instruction> all;
     std::size_t at = 5;
     while (at < words.size()) {
         const std::size_t length = words[at] >> 16;
         if (length == 0 || at + length > words.size()) break;
         all.push_back({words[at] & 0xffff,
-                       Words(words.begin() + std::ptrdiff_t(at + 1), words.begin() + std::ptrdiff_t(at + length))});
+                       Module(words.begin() + std::ptrdiff_t(at + 1), words.begin() + std::ptrdiff_t(at + length))});
         at += length;
     }
     EXPECT_EQ(at, words.size()) << "the module does not end with an instruction";
     return all;
 }
 
-Words module_of(KernelId kernel) {
+Module module_of(KernelId kernel) {
     const auto words = words_of(kernel, "cppm");
     return {words.begin(), words.end()};
 }
@@ -45,7 +45,7 @@ Words module_of(KernelId kernel) {
 constexpr std::uint32_t extension = 10, entry_point = 15, execution_mode = 16, capability = 17;
 
 TEST(Convergence, IsAskedForByKernelsWithBallots) {
-    const Words before = module_of(KernelId::photon);
+    const Module before = module_of(KernelId::photon);
     EXPECT_EQ(with_promise(before, Reconvergence::none), before);
     for (const Promise& promise : promises) {
         SCOPED_TRACE(promise.extension);
@@ -65,7 +65,7 @@ TEST(Convergence, IsAskedForByKernelsWithBallots) {
 }
 
 TEST(Convergence, IsNothingToKernelsWithoutBallots) {
-    const Words before = module_of(KernelId::update);
+    const Module before = module_of(KernelId::update);
     EXPECT_EQ(with_promise(before, Reconvergence::maximal), before);
 }
 

@@ -25,7 +25,7 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* extension = "KHR_draco_mesh_compression";
-constexpr std::size_t bytes_a_triangle = 12;
+constexpr std::size_t connectivity_bytes_a_triangle = 12;
 
 /// Counts that stand at the beginning of what a decoder calls connectivity.
 struct Connectivity {
@@ -47,7 +47,7 @@ struct Connectivity {
     }
 
     std::size_t bytes() const {
-        return bytes_a_triangle * triangles * (1 + std::size_t(seams)) + sizeof(float) * vertices;
+        return connectivity_bytes_a_triangle * triangles * (1 + std::size_t(seams)) + sizeof(float) * vertices;
     }
 };
 

@@ -18,14 +18,14 @@ namespace vkcppm {
 
 namespace {
 
-using Bytes = std::span<const std::uint8_t>;
+using Encoded = std::span<const std::uint8_t>;
 
-bool starts_with(Bytes bytes, std::string_view signature) {
+bool starts_with(Encoded bytes, std::string_view signature) {
     return bytes.size() >= signature.size() && std::memcmp(bytes.data(), signature.data(), signature.size()) == 0;
 }
 
-bool is_png(Bytes bytes) { return starts_with(bytes, "\x89PNG\r\n\x1a\n"); }
-bool is_jpeg(Bytes bytes) { return starts_with(bytes, "\xff\xd8\xff"); }
+bool is_png(Encoded bytes) { return starts_with(bytes, "\x89PNG\r\n\x1a\n"); }
+bool is_jpeg(Encoded bytes) { return starts_with(bytes, "\xff\xd8\xff"); }
 
 [[noreturn]] void refuse_format() { throw std::runtime_error("neither PNG, JPEG nor WebP"); }
 
@@ -43,7 +43,7 @@ struct PngState {
 /// of them holds anything to destroy.
 class PngReader {
 public:
-    explicit PngReader(Bytes bytes) : rest_(bytes) {
+    explicit PngReader(Encoded bytes) : rest_(bytes) {
         state_.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, on_error, on_warning);
         state_.info = state_.png ? png_create_info_struct(state_.png) : nullptr;
         if (!state_.info) throw std::bad_alloc();
@@ -98,7 +98,7 @@ private:
         reader.rest_ = reader.rest_.subspan(size);
     }
 
-    Bytes rest_;
+    Encoded rest_;
     PngState state_;
     std::vector<png_bytep> rows_;
     std::array<char, 200> message_{};
@@ -106,7 +106,7 @@ private:
 
 class JpegReader {
 public:
-    explicit JpegReader(Bytes bytes) : bytes_(bytes), decoder_(tjInitDecompress(), tjDestroy) {
+    explicit JpegReader(Encoded bytes) : bytes_(bytes), decoder_(tjInitDecompress(), tjDestroy) {
         if (!decoder_) throw std::bad_alloc();
         int subsampling, color_space;
         check(tjDecompressHeader3(decoder_.get(), bytes_.data(), bytes_.size(), &width_, &height_, &subsampling,
@@ -135,14 +135,14 @@ private:
         if (result != 0) throw std::runtime_error(fmt::format("broken JPEG: {}", tjGetErrorStr2(decoder_.get())));
     }
 
-    Bytes bytes_;
+    Encoded bytes_;
     std::unique_ptr<void, int (*)(tjhandle)> decoder_;
     int width_ = 0, height_ = 0;
 };
 
 class WebpReader {
 public:
-    explicit WebpReader(Bytes bytes) : bytes_(bytes) {
+    explicit WebpReader(Encoded bytes) : bytes_(bytes) {
         check(WebPGetFeatures(bytes_.data(), bytes_.size(), &features_));
         if (features_.has_animation) throw std::runtime_error("a WebP that moves is no texture");
     }
@@ -168,30 +168,30 @@ private:
         throw std::runtime_error(fmt::format("broken WebP: {}", ends_early ? "the data ends early" : "wrong data"));
     }
 
-    Bytes bytes_;
+    Encoded bytes_;
     WebPBitstreamFeatures features_{};
 };
 
 }  // namespace
 
-bool is_webp(Bytes bytes) {
+bool is_webp(Encoded bytes) {
     return starts_with(bytes, "RIFF") && bytes.size() >= 12 && starts_with(bytes.subspan(8), "WEBP");
 }
 
-std::string_view foreign_format(Bytes bytes) {
+std::string_view foreign_format(Encoded bytes) {
     if (starts_with(bytes, "\xabKTX 20\xbb")) return "KTX2";
     if (starts_with(bytes, "DDS ")) return "DDS";
     return {};
 }
 
-Extent picture_size(Bytes bytes) {
+Extent picture_size(Encoded bytes) {
     if (is_png(bytes)) return PngReader(bytes).size();
     if (is_jpeg(bytes)) return JpegReader(bytes).size();
     if (is_webp(bytes)) return WebpReader(bytes).size();
     refuse_format();
 }
 
-std::vector<std::uint8_t> decode_picture(Bytes bytes) {
+std::vector<std::uint8_t> decode_picture(Encoded bytes) {
     if (is_png(bytes)) return PngReader(bytes).rgba();
     if (is_jpeg(bytes)) return JpegReader(bytes).rgba();
     if (is_webp(bytes)) return WebpReader(bytes).rgba();

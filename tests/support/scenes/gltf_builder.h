@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 namespace vkcppm::test {
 
 using Float3 = std::array<float, 3>;
+inline constexpr float float_nan = std::numeric_limits<float>::quiet_NaN();
 
 class GltfBuilder {
 public:
@@ -42,6 +44,9 @@ public:
 
     /// A mesh of one primitive, e.g. {{"attributes", {{"POSITION", 0}}}}.
     int mesh(const nlohmann::json& primitive) { return add("meshes", {{"primitives", {primitive}}}); }
+
+    /// The first primitive of the first mesh.
+    nlohmann::json& primitive() { return document["meshes"][0]["primitives"][0]; }
 
     /// The index of a texture without sampler whose image is the bytes of a picture's file, in a bufferView.
     int texture(const std::string& file) {
