@@ -54,12 +54,17 @@ uint dimension_of(uint met, uint each) { return each * (met & 1023u) + (met >> 1
 const uint RECURRENCE[STRATIFIED_DIMENSIONS] = uint[](0xc13fa9a9u, 0x91e10da5u, 0x9b05688cu, 0x8eb44a87u, 0xae5f9156u,
                                                       0x07fe00ffu, 0x2bc75cf6u, 0x75644b49u);
 
+// Term `i` of an additive recurrence in [0, 1), shifted at random for every pixel and dimension.
+float recurrence(uint seed, uint i, uint pixel, uint dimension, uint step) {
+    uint shift = pcg4d(uvec4(pixel, dimension, STREAM_SHIFT, seed)).x;
+    return float((shift + i * step) >> 8u) * 5.9604644775390625e-8;
+}
+
 // A number in [0, 1) for dimension `dimension` of the eye path of `pixel`: over the iterations a low-discrepancy
-// sequence, shifted at random for every pixel and dimension; independent numbers beyond the stratified dimensions.
+// sequence; independent numbers beyond the stratified dimensions.
 float stratified(uint seed, uint iteration, uint pixel, uint dimension) {
     if (dimension >= STRATIFIED_DIMENSIONS) return random4(seed, iteration, STREAM_EYE, pixel, dimension).x;
-    uint shift = pcg4d(uvec4(pixel, dimension, STREAM_SHIFT, seed)).x;
-    return float((shift + iteration * RECURRENCE[dimension]) >> 8u) * 5.9604644775390625e-8;
+    return recurrence(seed, iteration, pixel, dimension, RECURRENCE[dimension]);
 }
 
 // A hash of the bits of a number in [0, 1), of which each depends on those above it alone: Owen's scrambling (1995)

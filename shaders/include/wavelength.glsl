@@ -6,10 +6,21 @@
 #include "include/rng.glsl"
 
 #define WAVELENGTH_DIMENSION 0xffffu  // beyond every bounce
+// The step of its recurrence, that of the square root of 7: beside those of RECURRENCE its pairs are as even as theirs.
+#define WAVELENGTH_STEP 0xa54ff53au
 
-// Uniform in 0.4 to 0.7 micrometres; the same for every bounce of a path.
+// Uniform in 0.4 to 0.7 micrometres; the same for every bounce of a path. Over the paths of a pixel the spectrum is
+// covered evenly: as one wavelength shows but one colour, that is most of the noise of what light splits in.
 float wavelength_of(uint stream, uint path) {
-    return 0.4 + 0.3 * random4(params.seed, launch.iteration, stream, path, WAVELENGTH_DIMENSION).x;
+    float u = random4(params.seed, launch.iteration, stream, path, WAVELENGTH_DIMENSION).x;
+    if (stream == STREAM_EYE) {
+        u = recurrence(params.seed, launch.iteration, path, WAVELENGTH_DIMENSION, WAVELENGTH_STEP);
+    } else if (stream == STREAM_PATH) {
+        uint pixels = params.width * params.height;
+        uint number = launch.iteration * launch.paths + path / pixels;
+        u = recurrence(params.seed, number, path % pixels, WAVELENGTH_DIMENSION, WAVELENGTH_STEP);
+    }
+    return 0.4 + 0.3 * u;
 }
 
 // How much light of a wavelength there is in each channel: triangles about 0.65, 0.55 and 0.45 micrometres that reach

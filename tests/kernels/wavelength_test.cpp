@@ -1,5 +1,7 @@
 // Dispersion: wavelengths, their colours and indices, against oracle/dispersion in double.
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -21,17 +23,22 @@ constexpr std::uint32_t wavelength_words[] = {
 
 class Wavelength : public GpuTest {
 protected:
-    std::vector<gpu::WavelengthOutput> run(const std::vector<gpu::WavelengthInput>& inputs, std::uint32_t stream = 0) {
+    std::vector<gpu::WavelengthOutput> run(const std::vector<gpu::WavelengthInput>& inputs, std::uint32_t stream = 0,
+                                           std::uint32_t iteration = 3, std::uint32_t paths = 1) {
         gpu::Params params{};
         params.seed = 5;
+        params.width = params.height = side;
         probe_.input(Binding::params, std::vector{params});
         probe_.input(PROBE_INPUT, inputs);
         probe_.output<gpu::WavelengthOutput>(PROBE_OUTPUT, inputs.size());
-        probe_.run(inputs.size(),
-                   {.iteration = 3, .last_round = 0, .argument = stream, .items = std::uint32_t(inputs.size())});
+        gpu::Launch push{
+            .iteration = iteration, .last_round = 0, .argument = stream, .items = std::uint32_t(inputs.size())};
+        push.paths = paths;
+        probe_.run(inputs.size(), push);
         return probe_.result<gpu::WavelengthOutput>(PROBE_OUTPUT, inputs.size());
     }
 
+    static constexpr std::uint32_t side = 400;  // of the picture, pixels
     Probe probe_{"wavelength", wavelength_words};
 };
 
@@ -63,6 +70,33 @@ TEST_F(Wavelength, AreUniformAndTheirOwnForEveryPath) {
             ++bins[std::min<std::size_t>(59, std::size_t(60.0 * (double(out.drawn) - 0.4) / 0.3))];
         }
         expect_density("wavelengths", chi_squared_uniform(bins), sidak(1e-3, 2));
+    }
+}
+
+// 64 that a pixel draws, over iterations or as paths of the path tracer: of random numbers three of four pixels would
+// have a bin of one or none.
+TEST_F(Wavelength, OfAPixelCoverTheSpectrumEvenly) {
+    constexpr std::size_t pixels = std::size_t(side) * side, looked_at = 100;
+    std::vector<std::array<std::uint64_t, 16>> eye(looked_at), traced(looked_at);
+    const auto count = [](auto& bins, float drawn) {
+        ++bins[std::min<std::size_t>(15, std::size_t(16.0 * (double(drawn) - 0.4) / 0.3))];
+    };
+    for (std::uint32_t i = 0; i < 64; ++i) {
+        const auto outputs = run(std::vector<gpu::WavelengthInput>(looked_at, {0.5f, 1.5f, 0.0f}), 0, i);
+        for (std::size_t pixel = 0; pixel < looked_at; ++pixel) count(eye[pixel], outputs[pixel].drawn);
+    }
+    const std::vector<gpu::WavelengthInput> two_each(pixels + looked_at, {0.5f, 1.5f, 0.0f});
+    for (std::uint32_t batch = 0; batch < 32; ++batch) {
+        const auto outputs = run(two_each, 3, batch, 2);
+        for (std::size_t pixel = 0; pixel < looked_at; ++pixel) {
+            for (const std::size_t path : {pixel, pixels + pixel}) count(traced[pixel], outputs[path].drawn);
+        }
+    }
+    for (const auto* all : {&eye, &traced}) {
+        for (const auto& bins : *all) {
+            EXPECT_GE(*std::ranges::min_element(bins), 2u);
+            EXPECT_LE(*std::ranges::max_element(bins), 6u);
+        }
     }
 }
 
