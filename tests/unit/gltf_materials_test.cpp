@@ -446,6 +446,19 @@ TEST(GltfImage, AnAbsentOneOrOneOfAnotherFormatIsAWarning) {
     const Scene ktx = load(with_image({{"uri", test::data_uri("\xabKTX 20\xbb\r\n\x1a\n", "image/ktx2")}}));
     EXPECT_FALSE(ktx.materials.at(0).base_color_texture);
     EXPECT_ONE_WARNING(ktx, "images[0]", "lacks KTX2: export PNG, JPEG or WebP");
+    const Scene gif = load(with_image({{"uri", test::data_uri("GIF89a", "image/gif")}}));
+    EXPECT_FALSE(gif.materials.at(0).base_color_texture);
+    EXPECT_ONE_WARNING(gif, "images[0]", "lacks GIF: export PNG, JPEG or WebP");
+}
+
+TEST(GltfImage, ADamagedOneThatIsWholeIsAWarning) {
+    std::string jpeg = test::encode_jpeg({8, 8}, std::vector<std::uint8_t>(64, 77), true);
+    jpeg.insert(jpeg.size() - 2, 16, 'x');  // before the mark of its end
+    const Scene scene = load(with_image({{"uri", test::data_uri(jpeg, "image/jpeg")}}));
+    EXPECT_TRUE(scene.materials.at(0).base_color_texture);
+    ASSERT_EQ(scene.images.size(), 1u);
+    EXPECT_NEAR(scene.images[0].rgba.at(0), 77, 1);
+    EXPECT_ONE_WARNING(scene, "images[0] (", "extraneous", "damaged");
 }
 
 TEST(HostileImage, IsRefusedByALineThatNamesIt) {

@@ -84,10 +84,10 @@ std::optional<std::uint32_t> GltfImages::add(Source source) {
 }
 
 std::vector<TextureImage> GltfImages::take_images() {
-    std::vector<std::string> broken(images_.size());  // why; empty: it is not
+    std::vector<std::string> broken(images_.size()), flaws(images_.size());  // why; empty: it is not
     tbb::parallel_for(std::size_t(0), images_.size(), [&](std::size_t i) {
         try {
-            images_[i].rgba = decode_picture(sources_[i].bytes);
+            images_[i].rgba = decode_picture(sources_[i].bytes, flaws[i]);
             Bytes().swap(sources_[i].own_bytes);
         } catch (const std::runtime_error& error) {
             broken[i] = error.what();
@@ -95,6 +95,8 @@ std::vector<TextureImage> GltfImages::take_images() {
     });
     for (std::size_t i = 0; i < broken.size(); ++i) {
         if (!broken[i].empty()) bad_scene(file_.name, sources_[i].object, "unreadable", broken[i]);
+        if (flaws[i].empty()) continue;
+        warnings_.add("it is damaged, what can be read is used", fmt::format("{} ({})", sources_[i].object, flaws[i]));
     }
     return std::move(images_);
 }
