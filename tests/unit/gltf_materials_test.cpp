@@ -345,6 +345,24 @@ TEST(GltfTexture, TakesTheWebpWhereThereAreTwo) {
     const Scene both = load(builder);
     EXPECT_EQ(both.images.at(base_color_texture(both).image).rgba, texel);
     EXPECT_EQ(warnings_with(both, {"webp"}), 0) << all_warnings(both);
+    // What is no WebP, or is not there, is as if the program could not read any.
+    GltfBuilder broken = builder;
+    broken.document["images"][0] = {{"uri", test::data_uri("RIFF\1\1\1\1WEBPVP8 broken", "image/webp")}};
+    const Scene fallback = load(broken);
+    EXPECT_EQ(fallback.images.at(base_color_texture(fallback).image).rgba,
+              std::vector<std::uint8_t>(red.begin(), red.end()));
+    EXPECT_ONE_WARNING(fallback, "textures[1]", "WebP cannot be read");
+    broken.document["textures"][texture].erase("source");
+    const Scene without = load(broken);
+    EXPECT_FALSE(without.materials.at(0).base_color_texture);
+    EXPECT_ONE_WARNING(without, "textures[1]", "WebP cannot be read", "ignored");
+    broken.document["extensionsRequired"] = {"EXT_texture_webp"};
+    expect_bad_scene(broken.gltf(), {"images[0] is unreadable", "broken WebP"});
+    broken = builder;
+    broken.document["images"][0] = {{"uri", "gone.webp"}};
+    const Scene absent = load(broken);
+    EXPECT_EQ(absent.images.at(base_color_texture(absent).image).rgba,
+              std::vector<std::uint8_t>(red.begin(), red.end()));
     builder.document["textures"][texture].erase("source");
     builder.document["extensionsRequired"] = {"EXT_texture_webp"};
     const Scene alone = load(builder);

@@ -1,5 +1,6 @@
 #include "scene/gltf/materials.h"
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
 
@@ -151,7 +152,8 @@ private:
                           fmt::format("textures[{}] ({})", index, member(name)));
             return std::nullopt;
         }
-        const std::optional<std::uint32_t> image = images_.index(named["source"].get<std::size_t>());
+        const std::optional<std::uint32_t> image =
+            &named == &webp ? image_of_webp(source, webp, index) : images_.index(image_number(source));
         if (!image) return std::nullopt;
 
         Texture texture;
@@ -165,6 +167,25 @@ private:
         }
         set_transform(texture, transform, member(name));
         return texture;
+    }
+
+    static std::size_t image_number(const json& source) { return source["source"].get<std::size_t>(); }
+
+    /// The image of textures[index] that EXT_texture_webp names; where it is not there, or cannot be read and the file
+    /// does not require the extension, the one beside it, if any.
+    std::optional<std::uint32_t> image_of_webp(const json& source, const json& webp, std::size_t index) {
+        const json required = file_.document.value("extensionsRequired", json::array());
+        const bool is_required = std::ranges::find(required, "EXT_texture_webp") != required.end();
+        const bool has_other = source.contains("source");
+        try {
+            if (const auto image = images_.index(image_number(webp))) return image;
+        } catch (const Error&) {
+            if (is_required) throw;
+            warnings_.add(
+                fmt::format("its WebP cannot be read, {}", has_other ? "the image beside it is used" : "it is ignored"),
+                fmt::format("textures[{}]", index));
+        }
+        return has_other ? images_.index(image_number(source)) : std::nullopt;
     }
 
     /// KHR_texture_transform: scaled, then turned, then moved. A positive angle turns the coordinates counter-clockwise
