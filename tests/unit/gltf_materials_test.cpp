@@ -385,6 +385,64 @@ TEST(GltfTexture, FallsBackFromAFormatItLacks) {
                      {"extensionsRequired is \"KHR_texture_basisu\"", "lacks it: export its textures as PNG, JPEG"});
 }
 
+// ---- specular-glossiness ----
+
+TEST(GltfSpecularGlossiness, IsADielectricOfItsSpecularColour) {
+    GltfBuilder builder = textured_triangle();
+    set_material(builder, {{"pbrMetallicRoughness", {{"metallicFactor", 1}, {"baseColorFactor", {0, 0, 0, 1}}}},
+                           {"extensions",
+                            {{"KHR_materials_pbrSpecularGlossiness",
+                              {{"diffuseFactor", {0.1, 0.2, 0.3, 0.4}},
+                               {"specularFactor", {0.9, 0.5, 0.25}},
+                               {"glossinessFactor", 0.75}}}}}});
+    builder.document["extensionsRequired"] = {"KHR_materials_pbrSpecularGlossiness"};
+    const Scene scene = load(builder);
+    const Material& m = scene.materials.at(0);
+    EXPECT_EQ(m.base_color, glm::vec3(0.1f, 0.2f, 0.3f));
+    EXPECT_EQ(m.opacity, 0.4f);
+    EXPECT_EQ(m.metallic, 0.0f);
+    EXPECT_EQ(m.roughness, 0.25f);
+    EXPECT_EQ(m.ior, 0.0f);
+    EXPECT_EQ(m.specular, 1.0f);
+    EXPECT_EQ(m.specular_color, glm::vec3(0.9f, 0.5f, 0.25f));
+    EXPECT_ONE_WARNING(scene, "materials[0].KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular");
+}
+
+TEST(GltfSpecularGlossiness, ItsTextureIsThatOfTheColourAndOfTheRoughness) {
+    const auto loaded = [](const json& values, const json& extensions = json::object()) {
+        GltfBuilder builder = textured_triangle();
+        builder.texture(test::encode_png({2, 1}, {255, 0, 0, 255, 10, 20, 30, 51}));
+        json all = extensions;
+        all["KHR_materials_pbrSpecularGlossiness"] = values;
+        set_material(builder, {{"extensions", all}});
+        return load(builder);
+    };
+    const json texture = {{"index", 0}};
+    const Scene scene =
+        loaded({{"diffuseTexture", texture}, {"specularGlossinessTexture", texture}, {"glossinessFactor", 0.5}});
+    const Material& m = scene.materials.at(0);
+    EXPECT_EQ(m.roughness, 1.0f);
+    ASSERT_EQ(scene.images.size(), 2u);
+    const std::uint32_t color = m.specular_color_texture.value().image;
+    EXPECT_EQ(m.base_color_texture.value().image, color);
+    EXPECT_EQ(scene.images[color].rgba, (std::vector<std::uint8_t>{255, 0, 0, 255, 10, 20, 30, 51}));
+    // 255 (1 - 0.5 a)
+    EXPECT_EQ(scene.images[m.metallic_roughness_texture.value().image].rgba,
+              (std::vector<std::uint8_t>{0, 128, 0, 255, 0, 230, 0, 255}));
+
+    // Without its image the factors are what is left.
+    const json absent = {{"index", 0}};
+    GltfBuilder builder = textured_triangle();
+    builder.add("textures", {{"source", builder.add("images", {{"uri", "gone.png"}})}});
+    set_material(builder, {{"extensions",
+                            {{"KHR_materials_pbrSpecularGlossiness",
+                              {{"specularGlossinessTexture", absent}, {"glossinessFactor", 0.75}}}}}});
+    EXPECT_EQ(load(builder).materials.at(0).roughness, 0.25f);
+
+    const Scene unlit = loaded({{"diffuseFactor", {1, 0, 0, 1}}}, {{"KHR_materials_unlit", json::object()}});
+    EXPECT_EQ(unlit.materials.at(0).base_color, glm::vec3(1.0f)) << "the core's";
+}
+
 // ---- images ----
 
 TEST(GltfImage, ReadsFilesDataUrisAndBufferViewsAlike) {

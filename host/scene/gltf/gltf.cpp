@@ -20,6 +20,7 @@
 #include "scene/gltf/nodes.h"
 #include "scene/gltf/schema.h"
 #include "scene/gltf/skins.h"
+#include "scene/gltf/specular_glossiness.h"
 #include "scene/gltf/variants.h"
 #include "scene/gltf/views.h"
 #include "scene/warnings.h"
@@ -123,6 +124,7 @@ Scene load_gltf(const std::filesystem::path& path, const GltfOptions& options) {
         GltfFile file = read_gltf_file(path, options.root);
         Warnings warnings;
         decode_draco(file, warnings);
+        convert_specular_glossiness(file);
         change_materials(file, options.set);
         tinygltf::Model model = parse_model(file);
         Scene scene = read_scene(file, model, options, warnings);
