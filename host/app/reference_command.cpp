@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -47,7 +48,12 @@ void execute(const ReferenceOptions& options) {
     const PipelineCache cache(device, options.device.cache);
     const Reference reference = refine_with_progress(scene, options, device);
     print_warnings(reference.warnings);
-    write_exr(options.output, reference_channels(reference), reference_attributes(options, scene, reference),
+    const ExrChannels channels = reference_channels(reference);
+    if (const std::size_t count = options.half ? beyond_halves(channels) : 0) {
+        print_warnings(
+            std::vector{fmt::format("{} numbers of the picture are beyond 65504, which they become by --half", count)});
+    }
+    write_exr(options.output, channels, reference_attributes(options, scene, reference),
               options.half ? ExrDepth::half : ExrDepth::full);
     if (options.stats) write_file(*options.stats, reference_json(options, scene, reference, true));
     print_result(options.json ? reference_json(options, scene, reference, false) : reference_summary(reference));

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <string_view>
 #include <vector>
 
@@ -52,23 +53,43 @@ std::string shown(const Image& image, std::size_t i) {
                        v.b);
 }
 
-/// Takes what is negative for 0, with a warning: sharpening, another gamut and lossy compression leave such pixels.
-void mend(Image& image, const fs::path& file, std::vector<std::string>& warnings) {
-    std::size_t mended = 0;
+/// Pixels of a kind: the first of them, as it was, and how many they are.
+struct OddPixels {
     std::string first;
+    std::size_t count = 0;
+
+    void add(const Image& image, std::size_t i) {
+        if (count++ == 0) first = shown(image, i);
+    }
+
+    void tell(std::string_view what, const fs::path& file, std::vector<std::string>& warnings) const {
+        if (count == 0) return;
+        const std::string more = count > 1 ? fmt::format(" (and {} more)", count - 1) : "";
+        warnings.push_back(fmt::format("{}: {}{}: {}", file.string(), first, more, what));
+    }
+};
+
+/// Takes what is negative for 0, with a warning: sharpening, another gamut and lossy compression leave such pixels.
+/// What is infinite was too bright for a half float, as the sun is in many panoramas: it becomes the brightest of them.
+void mend(Image& image, const fs::path& file, std::vector<std::string>& warnings) {
+    constexpr float infinity = std::numeric_limits<float>::infinity(), brightest_half = 65504.0f;
+    OddPixels negative, infinite;
     for (std::size_t i = 0; i < image.rgb.size(); ++i) {
         glm::vec3& v = image.rgb[i];
+        if (v.r == infinity || v.g == infinity || v.b == infinity) {
+            infinite.add(image, i);
+            for (int c = 0; c < 3; ++c) v[c] = v[c] == infinity ? brightest_half : v[c];
+        }
         if (!is_finite(v)) {
             throw Error(ExitCode::bad_scene,
                         fmt::format("{}: {}; radiance must be finite", file.string(), shown(image, i)));
         }
         if (v.r >= 0.0f && v.g >= 0.0f && v.b >= 0.0f) continue;
-        if (mended++ == 0) first = shown(image, i);
+        negative.add(image, i);
         v = glm::max(v, glm::vec3(0.0f));
     }
-    if (mended == 0) return;
-    const std::string more = mended > 1 ? fmt::format(" (and {} more)", mended - 1) : "";
-    warnings.push_back(fmt::format("{}: {}{}: negative radiance is taken as 0", file.string(), first, more));
+    negative.tell("negative radiance is taken as 0", file, warnings);
+    infinite.tell("infinite radiance is taken as 65504, the brightest of half floats", file, warnings);
 }
 
 }  // namespace

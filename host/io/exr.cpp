@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 
 #include <ImfChannelList.h>
 #include <ImfChromaticities.h>
@@ -27,6 +29,12 @@ namespace {
 
 // All work happens in the calling thread: a picture is small beside its render, and the bytes cannot depend on timing.
 constexpr int no_worker_threads = 0;
+
+bool is_beyond_halves(float value) { return std::isfinite(value) && std::abs(value) > HALF_MAX; }
+
+Imath::half to_half(float value) {
+    return is_beyond_halves(value) ? Imath::half(std::copysign(HALF_MAX, value)) : Imath::half(value);
+}
 
 [[noreturn]] void fail_to_read(const fs::path& file, const std::string& reason) {
     throw Error(ExitCode::bad_scene, file.string() + ": cannot read this EXR picture: " + reason);
@@ -168,6 +176,12 @@ ExrChannels to_channels(const Image& image) {
     return channels;
 }
 
+std::size_t beyond_halves(const ExrChannels& channels) {
+    std::ptrdiff_t count = 0;
+    for (const auto& [name, values] : channels.values) count += std::ranges::count_if(values, is_beyond_halves);
+    return std::size_t(count);
+}
+
 void write_exr(const fs::path& file, const ExrChannels& channels, const ExrAttributes& attributes, ExrDepth depth) {
     const auto [columns, rows] = channels.extent;
     // In memory first: OpenEXR's own file stream does not notice when the last bytes fail to reach the disk.
@@ -181,7 +195,9 @@ void write_exr(const fs::path& file, const ExrChannels& channels, const ExrAttri
         std::vector<std::vector<Imath::half>> halves;  // as they are written
         for (const auto& [name, values] : channels.values) {
             assert(values.size() == channels.extent.pixels());
-            if (depth == ExrDepth::half) halves.emplace_back(values.begin(), values.end());
+            if (depth == ExrDepth::half) {
+                std::ranges::transform(values, std::back_inserter(halves.emplace_back()), to_half);
+            }
             const Imf::PixelType type = depth == ExrDepth::half ? Imf::HALF : Imf::FLOAT;
             const std::size_t stride = depth == ExrDepth::half ? sizeof(Imath::half) : sizeof(float);
             const void* data = depth == ExrDepth::half ? static_cast<const void*>(halves.back().data()) : values.data();

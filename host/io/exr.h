@@ -25,8 +25,12 @@ using ExrAttributes = std::vector<std::pair<std::string, std::string>>;
 /// The channels R, G and B of `image`.
 ExrChannels to_channels(const Image& image);
 
-/// How a number is stored: as it is, or rounded to the nearest half float, 11 bits of at most 65,504.
+/// How a number is stored: as it is, or rounded to the nearest half float, 11 bits of at most 65,504, which a number
+/// beyond becomes, while what is infinite stays so.
 enum class ExrDepth { full, half };
+
+/// How many numbers are beyond the half floats.
+std::size_t beyond_halves(const ExrChannels& channels);
 
 /// Writes scan lines with ZIP compression and the chromaticities of Rec. 709. The same arguments give the same bytes.
 /// The file is written whole or not at all (write_file). Throws Error(cannot_write).

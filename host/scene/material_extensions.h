@@ -76,6 +76,12 @@ EXTENSION(KHR_materials_iridescence,
             "iridescence thickness", linear,  // g
             m.iridescence > 0.0f))
 EXTENSION(KHR_materials_unlit)
+EXTENSION(KHR_materials_pbrSpecularGlossiness,  // rewritten as what took its place: scene/gltf/specular_glossiness.h
+    OTHER(color_with_alpha, "diffuseFactor")
+    OTHER(texture, "diffuseTexture")
+    OTHER(color, "specularFactor")
+    OTHER(number, "glossinessFactor")
+    OTHER(texture, "specularGlossinessTexture"))
 // clang-format on
 
 #undef EXTENSION

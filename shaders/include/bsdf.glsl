@@ -63,16 +63,12 @@ struct Bsdf {
     vec3 dielectric0;
 };
 
-const float CLEARCOAT_R0 = 0.04;
 // Width of anisotropic facets across the tangent at least: a line has no density.
 const float LEAST_ACROSS = 1e-3;
 
 // Reflectance of the clearcoat, and what it leaves to the lobes below.
 float clearcoat_fresnel(Bsdf b, float cosine) {
-    if (!HAS_CLEARCOAT) return 0.0;
-    // precise: versions of Mesa rearrange it, each in its own way, and rounding differs.
-    precise float fresnel = b.clearcoat * (CLEARCOAT_R0 + (1.0 - CLEARCOAT_R0) * schlick_power(cosine));
-    return fresnel;
+    return HAS_CLEARCOAT ? clearcoat_reflectance(b.clearcoat, cosine) : 0.0;
 }
 
 float below_clearcoat(Bsdf b, float cosine) { return 1.0 - clearcoat_fresnel(b, cosine); }

@@ -214,7 +214,7 @@ void meet_unlit(inout EyePath path, Vertex v) {
 
 void meet_emission(inout EyePath path, Vertex v) {
     if ((v.surface.front || has(v.material, SURFACE_DOUBLE_SIDED)) && sees_light(path.at.flags)) {
-        vec3 met = v.material.emission;
+        vec3 met = met_radiance(v.material, v.surface, path.at.direction);
         if (met != vec3(0.0)) {
             float density = EYE_PATHS_ASK ? met_density(v.material, v.surface, path.at.direction, path.at.leg) : 0.0;
             find(path, throughput_of_met(path, density, asks_emitter(density)) * met, layer_of_met(path.at.flags));

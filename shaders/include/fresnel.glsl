@@ -19,4 +19,13 @@ float schlick_power(float cosine) {
     return (m * m) * (m * m) * m;
 }
 
+const float CLEARCOAT_R0 = 0.04;  // KHR_materials_clearcoat: of index 1.5
+
+// Of a clearcoat of that strength.
+float clearcoat_reflectance(float clearcoat, float cosine) {
+    // precise: versions of Mesa rearrange it, each in its own way, and rounding differs.
+    precise float fresnel = clearcoat * (CLEARCOAT_R0 + (1.0 - CLEARCOAT_R0) * schlick_power(cosine));
+    return fresnel;
+}
+
 #endif

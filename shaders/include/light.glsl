@@ -35,8 +35,11 @@ float share_within_range(float range, float distance) {
 // How far a photon of such a light gets: beyond a distance in the share above. u in [0, 1).
 float sample_reach(float range, float u) { return range * sqrt(sqrt(1.0 - u)); }
 
-// The share of a textured light's factor that is emitted at a point of it: its texture, where the surface is there.
-vec3 emitted_share(Light light, vec2 b) {
+// Whether of what a light emits only a share gets out, by place or direction.
+bool has_share(Light light) { return HAS_CLEARCOAT || (HAS_TEXTURED_LIGHTS && light.textured != 0u); }
+
+// That share of a triangle at a point of it: its textures, where the surface is there, below its clearcoat.
+vec3 emitted_share(Light light, vec2 b, float cosine) {
     vec2 barycentric = (1.0 - b.x - b.y) * light.corner[0] + b.x * light.corner[1] + b.y * light.corner[2];
     SurfaceMaterial material = materials_at(material_of(texelFetch(shading_texels, int(light.triangle)).w));
     vec4 coordinates = HAS_TEXTURES ? texcoords_at(light.triangle, barycentric) : vec4(0.0);
@@ -49,8 +52,11 @@ vec3 emitted_share(Light light, vec2 b) {
         }
     }
     vec3 share = vec3(coverage_of(material));
-    if (HAS_TEXTURES) share *= texture_at(material.texture[TEXTURE_EMISSIVE], coordinates).rgb;
-    return share;
+    if (HAS_TEXTURES) {
+        share *= texture_at(material.texture[TEXTURE_EMISSIVE], coordinates).rgb;
+        if (HAS_CLEARCOAT) material.clearcoat *= texture_at(material.texture[TEXTURE_CLEARCOAT], coordinates).r;
+    }
+    return share * share_below_clearcoat(material.clearcoat, cosine);
 }
 
 // A light in proportion to its power (alias table, Walker 1974), by the first two of four random words.
@@ -137,7 +143,7 @@ LightSample sample_light(AskedGroup group, uvec2 bits, vec2 v, vec3 position) {
         s.triangle = lights_at(index).triangle;
         float inverse = cosine / (s.distance * s.distance);
         s.radiance = light.power * (inverse / (double_sided ? 2.0 * PI : PI));
-        if (HAS_TEXTURED_LIGHTS && light.textured != 0u) s.radiance *= emitted_share(light, b);
+        if (has_share(light)) s.radiance *= emitted_share(light, b, cosine);
         if (cosine > 0.0) s.density = density_of(s.triangle, double_sided) / inverse;
     }
     if ((HAS_POINT_LIGHTS || HAS_SPOT_LIGHTS) &&
@@ -189,7 +195,7 @@ uint emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 powe
         vec3 extent = abs(light.position) + abs(light.e1) + abs(light.e2);
         float error = 4.8e-7 * max(extent.x, max(extent.y, extent.z));
         origin = light.position + b.x * light.e1 + b.y * light.e2 + error * n;
-        if (HAS_TEXTURED_LIGHTS && light.textured != 0u) power *= emitted_share(light, b);
+        if (has_share(light)) power *= emitted_share(light, b, local.z);
     }
     if (HAS_POINT_LIGHTS && light.kind == LIGHT_POINT) {
         direction = sample_azimuth(1.0 - 2.0 * v.x, v.y);

@@ -5,6 +5,7 @@
 
 #include "include/kernel.glsl"
 #include "include/frame.glsl"
+#include "include/fresnel.glsl"
 #include "include/scene.glsl"
 #include "include/texture.glsl"
 #include "include/traverse.glsl"
@@ -263,6 +264,16 @@ SurfaceMaterial material_at(Hit hit, vec3 direction, inout Surface surface) {
 float coverage_of(SurfaceMaterial material) {
     if (has(material, SURFACE_MASK)) return material.opacity >= material.alpha_cutoff ? 1.0 : 0.0;
     return has(material, SURFACE_BLEND) ? material.opacity : 1.0;
+}
+
+// What gets out through the clearcoat over an emitter, by the cosine to its face (KHR_materials_clearcoat, Emission).
+float share_below_clearcoat(float clearcoat, float cosine) {
+    return HAS_CLEARCOAT ? 1.0 - clearcoat_reflectance(clearcoat, cosine) : 1.0;
+}
+
+// What an emitter sends along a ray that has met it.
+vec3 met_radiance(SurfaceMaterial material, Surface surface, vec3 direction) {
+    return material.emission * share_below_clearcoat(material.clearcoat, -dot(direction, surface.geometric));
 }
 
 #endif

@@ -47,7 +47,8 @@ vec3 met_emission(TraceState state, Surface surface, SurfaceMaterial material) {
     bool double_sided = has(material, SURFACE_DOUBLE_SIDED);
     if (material.emission == vec3(0.0) || !(surface.front || double_sided)) return vec3(0.0);
     if (photons_bring_emission(state.flags, state.distance)) return vec3(0.0);
-    return material.emission * met_weight(state, met_density(material, surface, state.direction, state.distance));
+    return met_radiance(material, surface, state.direction) *
+           met_weight(state, met_density(material, surface, state.direction, state.distance));
 }
 
 // Asks for a point of the lights of each group, weighed against meeting it. dimension: of the bounce.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -217,6 +218,19 @@ TEST_F(SeeThrough, AColourOfZeroLeavesNothing) {
     const glm::dvec3 want(0.0, through(a), through(1.0));
     expect_seen(before_a_lamp(block), want, 0.01, "seen", 64);
     expect_mean(valid_picture(in_the_sun(block), with_photons(), 16), 0.02 * want, 0.05, "lit");
+}
+
+// KHR_materials_clearcoat: of what is emitted below it what it does not reflect gets out, by Schlick at f0 = 0.04.
+TEST_F(SeeThrough, AClearcoatDimsWhatIsEmittedBelowIt) {
+    for (const double angle : {0.0, std::numbers::pi / 3.0}) {
+        Material coated = emitter(glm::vec3(1.0f, 0.5f, 0.0f));
+        coated.clearcoat = 0.5f;
+        Scene scene;
+        add_quad(scene, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add_material(scene, coated));
+        add_camera(scene, {4.0 * std::sin(angle), 0.013, 4.0 * std::cos(angle)}, {0.0, 0.0, 0.0}, 0.05);
+        const double out = 1.0 - 0.5 * (0.04 + 0.96 * std::pow(1.0 - std::cos(angle), 5));
+        expect_seen(scene, {out, 0.5 * out, 0.0}, 0.002, fmt::format("at {}", angle), 4);
+    }
 }
 
 // KHR_materials_specular at 45 degrees: F of the glass times the strength, and of a colour of 0 Schlick's (1 - cos)^5.

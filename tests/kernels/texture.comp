@@ -24,7 +24,7 @@ void main() {
         Surface surface = surface_at(hit, at.direction);
         SurfaceMaterial material = material_at(hit, at.direction, surface);
         result.value = vec4(material.color, material.opacity);
-        result.emission = material.emission;
+        result.emission = met_radiance(material, surface, at.direction);
         result.metal = vec4(material.metallic, material.roughness, material.transmission, material.specular);
         result.specular_color = material.specular_color;
         result.clearcoat = vec2(material.clearcoat, material.clearcoat_roughness);

@@ -52,7 +52,7 @@ void expect_refused(const std::filesystem::path& file, ExitCode code, const std:
 TEST(Environment, RefusesPixelsThatAreNoRadiance) {
     using Limits = std::numeric_limits<float>;
     const test::TemporaryFolder folder;
-    for (const float bad : {Limits::infinity(), -Limits::infinity(), Limits::quiet_NaN()}) {
+    for (const float bad : {-Limits::infinity(), Limits::quiet_NaN()}) {
         for (int channel = 0; channel < 3; ++channel) {
             Image sky{{3, 2}, std::vector<glm::vec3>(6, glm::vec3(Limits::max()))};
             sky.rgb[5][channel] = bad;
@@ -77,6 +77,25 @@ TEST(Environment, TakesWhatIsNegativeForBlack) {
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_EQ(warnings[0], (folder / "sky.exr").string() +
                                ": pixel (1, 0) is (1, -1e-06, 3) (and 1 more): negative radiance is taken as 0");
+}
+
+TEST(Environment, TakesWhatIsInfiniteForTheBrightestOfHalfFloats) {
+    const test::TemporaryFolder folder;
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    Image sky{{3, 2}, std::vector<glm::vec3>(6, glm::vec3(2.0f))};
+    sky.rgb[2] = {infinity, 70000.0f, 3};
+    sky.rgb[4] = {infinity, infinity, infinity};
+    write_exr(folder / "sky.exr", sky);
+    std::uint64_t hash = 0;
+    std::vector<std::string> warnings;
+    const Image read = read_environment(folder / "sky.exr", hash, warnings);
+    sky.rgb[2].r = 65504.0f;
+    sky.rgb[4] = glm::vec3(65504.0f);
+    EXPECT_EQ(read, sky);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(warnings[0], (folder / "sky.exr").string() +
+                               ": pixel (2, 0) is (inf, 70000, 3) (and 1 more): infinite "
+                               "radiance is taken as 65504, the brightest of half floats");
 }
 
 TEST(Environment, TurnsAboutTheVerticalWithoutLosingLight) {

@@ -188,6 +188,21 @@ TEST(Exr, RoundsToHalfFloatsWhereThatIsAskedFor) {
     }
 }
 
+TEST(Exr, WhatIsBeyondHalfFloatsBecomesTheLargest) {
+    const test::TemporaryFolder folder;
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    ExrChannels channels{{4, 1}, {}};
+    channels.values["R"] = {65504.0f, 65505.0f, 1e30f, infinity};
+    channels.values["G"] = {-65504.0f, -1e6f, -infinity, 0.0f};
+    channels.values["B"] = {1.0f, 2.0f, 3.0f, 4.0f};
+    EXPECT_EQ(beyond_halves(channels), 3u);
+    write_exr(folder / "a.exr", channels, {}, ExrDepth::half);
+    const ExrChannels read = read_exr_channels(folder / "a.exr", "");
+    EXPECT_EQ(read.values.at("R"), (std::vector{65504.0f, 65504.0f, 65504.0f, infinity}));
+    EXPECT_EQ(read.values.at("G"), (std::vector{-65504.0f, -65504.0f, -infinity, 0.0f}));
+    EXPECT_EQ(read.values.at("B"), channels.values["B"]);
+}
+
 TEST(Exr, ReadsHalfMixedAndTiledFilesOfAnyChannels) {
     const test::TemporaryFolder folder;
     const std::vector<Plane> mixed = {{"A", Imf::HALF, 1.0f},

@@ -131,6 +131,18 @@ TEST(Draco, WhatAFileKeepsForOtherProgramsIsNotRead) {
     EXPECT_EQ(triangles_of(load(b)), right) << "49 vertices at the origin, whose triangles are dropped";
 }
 
+TEST(Draco, WhatAFileKeepsForOtherProgramsTakesThePlaceOfBrokenData) {
+    GltfBuilder b = grid();
+    const auto right = triangles_of(load(b));
+    extension(b) = {{"bufferView", b.view(std::vector<char>(100, 'x'))}, {"attributes", {{"POSITION", 0}}}};
+    b.document["extensionsUsed"] = {draco};
+    const Scene scene = load(b);
+    EXPECT_EQ(triangles_of(scene), right);
+    EXPECT_ONE_WARNING(scene, std::string("meshes[0].primitives[0].extensions.") + draco, "cannot be read");
+    b.document["extensionsRequired"] = {draco};
+    expect_bad_scene(b.gltf(), {"begin like Draco's"});
+}
+
 TEST(Draco, AMeshThatNoNodeShowsIsNotDecoded) {
     GltfBuilder b = compressed();
     json broken = b.document["meshes"][0];

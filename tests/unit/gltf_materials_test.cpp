@@ -345,6 +345,24 @@ TEST(GltfTexture, TakesTheWebpWhereThereAreTwo) {
     const Scene both = load(builder);
     EXPECT_EQ(both.images.at(base_color_texture(both).image).rgba, texel);
     EXPECT_EQ(warnings_with(both, {"webp"}), 0) << all_warnings(both);
+    // What is no WebP, or is not there, is as if the program could not read any.
+    GltfBuilder broken = builder;
+    broken.document["images"][0] = {{"uri", test::data_uri("RIFF\1\1\1\1WEBPVP8 broken", "image/webp")}};
+    const Scene fallback = load(broken);
+    EXPECT_EQ(fallback.images.at(base_color_texture(fallback).image).rgba,
+              std::vector<std::uint8_t>(red.begin(), red.end()));
+    EXPECT_ONE_WARNING(fallback, "textures[1]", "WebP cannot be read");
+    broken.document["textures"][texture].erase("source");
+    const Scene without = load(broken);
+    EXPECT_FALSE(without.materials.at(0).base_color_texture);
+    EXPECT_ONE_WARNING(without, "textures[1]", "WebP cannot be read", "ignored");
+    broken.document["extensionsRequired"] = {"EXT_texture_webp"};
+    expect_bad_scene(broken.gltf(), {"images[0] is unreadable", "broken WebP"});
+    broken = builder;
+    broken.document["images"][0] = {{"uri", "gone.webp"}};
+    const Scene absent = load(broken);
+    EXPECT_EQ(absent.images.at(base_color_texture(absent).image).rgba,
+              std::vector<std::uint8_t>(red.begin(), red.end()));
     builder.document["textures"][texture].erase("source");
     builder.document["extensionsRequired"] = {"EXT_texture_webp"};
     const Scene alone = load(builder);
@@ -365,6 +383,64 @@ TEST(GltfTexture, FallsBackFromAFormatItLacks) {
     builder.document["extensionsRequired"] = {"KHR_texture_basisu"};
     expect_bad_scene(builder.gltf(),
                      {"extensionsRequired is \"KHR_texture_basisu\"", "lacks it: export its textures as PNG, JPEG"});
+}
+
+// ---- specular-glossiness ----
+
+TEST(GltfSpecularGlossiness, IsADielectricOfItsSpecularColour) {
+    GltfBuilder builder = textured_triangle();
+    set_material(builder, {{"pbrMetallicRoughness", {{"metallicFactor", 1}, {"baseColorFactor", {0, 0, 0, 1}}}},
+                           {"extensions",
+                            {{"KHR_materials_pbrSpecularGlossiness",
+                              {{"diffuseFactor", {0.1, 0.2, 0.3, 0.4}},
+                               {"specularFactor", {0.9, 0.5, 0.25}},
+                               {"glossinessFactor", 0.75}}}}}});
+    builder.document["extensionsRequired"] = {"KHR_materials_pbrSpecularGlossiness"};
+    const Scene scene = load(builder);
+    const Material& m = scene.materials.at(0);
+    EXPECT_EQ(m.base_color, glm::vec3(0.1f, 0.2f, 0.3f));
+    EXPECT_EQ(m.opacity, 0.4f);
+    EXPECT_EQ(m.metallic, 0.0f);
+    EXPECT_EQ(m.roughness, 0.25f);
+    EXPECT_EQ(m.ior, 0.0f);
+    EXPECT_EQ(m.specular, 1.0f);
+    EXPECT_EQ(m.specular_color, glm::vec3(0.9f, 0.5f, 0.25f));
+    EXPECT_ONE_WARNING(scene, "materials[0].KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular");
+}
+
+TEST(GltfSpecularGlossiness, ItsTextureIsThatOfTheColourAndOfTheRoughness) {
+    const auto loaded = [](const json& values, const json& extensions = json::object()) {
+        GltfBuilder builder = textured_triangle();
+        builder.texture(test::encode_png({2, 1}, {255, 0, 0, 255, 10, 20, 30, 51}));
+        json all = extensions;
+        all["KHR_materials_pbrSpecularGlossiness"] = values;
+        set_material(builder, {{"extensions", all}});
+        return load(builder);
+    };
+    const json texture = {{"index", 0}};
+    const Scene scene =
+        loaded({{"diffuseTexture", texture}, {"specularGlossinessTexture", texture}, {"glossinessFactor", 0.5}});
+    const Material& m = scene.materials.at(0);
+    EXPECT_EQ(m.roughness, 1.0f);
+    ASSERT_EQ(scene.images.size(), 2u);
+    const std::uint32_t color = m.specular_color_texture.value().image;
+    EXPECT_EQ(m.base_color_texture.value().image, color);
+    EXPECT_EQ(scene.images[color].rgba, (std::vector<std::uint8_t>{255, 0, 0, 255, 10, 20, 30, 51}));
+    // 255 (1 - 0.5 a)
+    EXPECT_EQ(scene.images[m.metallic_roughness_texture.value().image].rgba,
+              (std::vector<std::uint8_t>{0, 128, 0, 255, 0, 230, 0, 255}));
+
+    // Without its image the factors are what is left.
+    const json absent = {{"index", 0}};
+    GltfBuilder builder = textured_triangle();
+    builder.add("textures", {{"source", builder.add("images", {{"uri", "gone.png"}})}});
+    set_material(builder, {{"extensions",
+                            {{"KHR_materials_pbrSpecularGlossiness",
+                              {{"specularGlossinessTexture", absent}, {"glossinessFactor", 0.75}}}}}});
+    EXPECT_EQ(load(builder).materials.at(0).roughness, 0.25f);
+
+    const Scene unlit = loaded({{"diffuseFactor", {1, 0, 0, 1}}}, {{"KHR_materials_unlit", json::object()}});
+    EXPECT_EQ(unlit.materials.at(0).base_color, glm::vec3(1.0f)) << "the core's";
 }
 
 // ---- images ----
@@ -446,6 +522,19 @@ TEST(GltfImage, AnAbsentOneOrOneOfAnotherFormatIsAWarning) {
     const Scene ktx = load(with_image({{"uri", test::data_uri("\xabKTX 20\xbb\r\n\x1a\n", "image/ktx2")}}));
     EXPECT_FALSE(ktx.materials.at(0).base_color_texture);
     EXPECT_ONE_WARNING(ktx, "images[0]", "lacks KTX2: export PNG, JPEG or WebP");
+    const Scene gif = load(with_image({{"uri", test::data_uri("GIF89a", "image/gif")}}));
+    EXPECT_FALSE(gif.materials.at(0).base_color_texture);
+    EXPECT_ONE_WARNING(gif, "images[0]", "lacks GIF: export PNG, JPEG or WebP");
+}
+
+TEST(GltfImage, ADamagedOneThatIsWholeIsAWarning) {
+    std::string jpeg = test::encode_jpeg({8, 8}, std::vector<std::uint8_t>(64, 77), true);
+    jpeg.insert(jpeg.size() - 2, 16, 'x');  // before the mark of its end
+    const Scene scene = load(with_image({{"uri", test::data_uri(jpeg, "image/jpeg")}}));
+    EXPECT_TRUE(scene.materials.at(0).base_color_texture);
+    ASSERT_EQ(scene.images.size(), 1u);
+    EXPECT_NEAR(scene.images[0].rgba.at(0), 77, 1);
+    EXPECT_ONE_WARNING(scene, "images[0] (", "extraneous", "damaged");
 }
 
 TEST(HostileImage, IsRefusedByALineThatNamesIt) {

@@ -162,6 +162,13 @@ TEST(Gltf, ReadsAColumnMajorMatrixInDoublePrecision) {
     expect_corners(load(builder), {{far, -1, -2}, {far, 1, -2}, {far, -1, 1}});
 }
 
+TEST(Gltf, ReadsAMatrixWhoseLastRowIsRounded) {
+    GltfBuilder builder = test::one_triangle();
+    builder.document["nodes"] = {
+        {{"mesh", 0}, {"matrix", {1, 0, 0, 1e-9, 0, 1, 0, -3e-8, 0, 0, 1, 0, 5, 0, 0, 0.99999988}}}};
+    expect_corners(load(builder), {{5, 0, 0}, {6, 0, 0}, {5, 1, 0}});
+}
+
 TEST(Gltf, TransformsNormalsByTheInverseTranspose) {
     GltfBuilder builder;
     // A slope x + z = 1 whose normal (1, 0, 1) / sqrt 2 becomes that of x/2 + z = 1 under the scale (2, 1, 1).
@@ -684,6 +691,19 @@ TEST(Gltf, ClampsConesWithAWarning) {
         load_light({{"type", "spot"}, {"spot", {{"outerConeAngle", 1.5707963705062866}}}}, json::object());  // float
     EXPECT_EQ(rounded.lights[0].outer_cone, std::numbers::pi / 2);
     EXPECT_EQ(warnings_with(rounded, {"clamped"}), 0) << all_warnings(rounded);
+}
+
+TEST(Gltf, SkipsASpotLightWithoutACone) {
+    GltfBuilder builder = test::one_triangle();
+    builder.document["extensions"]["KHR_lights_punctual"]["lights"] = {
+        {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.0}, {"outerConeAngle", 0.0}}}}, {{"type", "point"}}};
+    for (const int light : {0, 1}) {
+        builder.add("nodes", {{"extensions", {{"KHR_lights_punctual", {{"light", light}}}}}});
+    }
+    const Scene scene = load(builder);
+    ASSERT_EQ(scene.lights.size(), 1u);
+    EXPECT_EQ(scene.lights[0].kind, PunctualLight::Kind::point);
+    EXPECT_ONE_WARNING(scene, "lights[0].spot.outerConeAngle = 0", "skipped");
 }
 
 // ---- extensions ----

@@ -20,7 +20,12 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
     return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-Texels texels_of(const std::string& file) { return decode_picture(bytes_of(file)); }
+Texels texels_of(const std::string& file) {
+    std::string flaw;
+    Texels texels = decode_picture(bytes_of(file), flaw);
+    EXPECT_EQ(flaw, "");
+    return texels;
+}
 
 /// Why a file is refused; empty where it is not.
 std::string refusal(const std::string& file) {
@@ -155,6 +160,16 @@ TEST(Picture, RefusesEveryTruncationOfTheTexels) {
     }
 }
 
+TEST(Picture, TakesAJpegWithBytesTooMany) {
+    const std::string jpeg = test::encode_jpeg({8, 8}, Texels(64, 77), true);
+    std::string padded = jpeg;
+    padded.insert(padded.size() - 2, 16, 'x');  // before the mark of its end
+    std::string flaw;
+    EXPECT_EQ(decode_picture(bytes_of(padded), flaw), texels_of(jpeg));
+    EXPECT_NE(flaw.find("extraneous"), std::string::npos) << flaw;
+    EXPECT_EQ(texels_of(jpeg + "and more"), texels_of(jpeg));
+}
+
 TEST(Picture, SaysWhyAFileIsBroken) {
     std::string png = test::one_texel_png({1, 2, 3, 4});
     png[png.find("IDAT") + 6] ^= 0x55;
@@ -173,6 +188,15 @@ TEST(Picture, KnowsTheFormatsOfExtensions) {
     EXPECT_EQ(foreign_format(bytes_of("RIFF....WEBPVP8 ")), "");
     EXPECT_EQ(foreign_format(bytes_of("RIFF....WAVE")), "");
     EXPECT_EQ(foreign_format(bytes_of("DDS |")), "DDS");
+    EXPECT_EQ(foreign_format(bytes_of("GIF89a")), "GIF");
+    EXPECT_EQ(foreign_format(bytes_of(std::string("\0\0\0\x20"
+                                                  "ftypavif",
+                                                  12))),
+              "AVIF");
+    EXPECT_EQ(foreign_format(bytes_of(std::string("MM\0*", 4))), "TIFF");
+    EXPECT_EQ(foreign_format(bytes_of("BM")), "BMP");
+    EXPECT_EQ(foreign_format(bytes_of("B")), "");
+    EXPECT_EQ(foreign_format(bytes_of("")), "");
     EXPECT_EQ(foreign_format(bytes_of(test::one_texel_png({1, 2, 3, 4}))), "");
 }
 

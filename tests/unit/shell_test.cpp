@@ -57,6 +57,49 @@ TEST(Shell, OfASphereWithSeamsIsClosed) {
     EXPECT_GT(shells[0].volume, 0.98 * ball);
 }
 
+// Spheres and tubes are commonly made of rows of vertices by sine and cosine, whose last column, and whose poles, are
+// where the first ones are but for rounding; in floats for much more than in doubles.
+template <typename Float> void expect_closed_in_rows_of(std::uint32_t columns, std::uint32_t rows) {
+    Scene scene;
+    const std::uint32_t material = test::add_material(scene, test::glass(1.5f));
+    const auto pi = Float(std::numbers::pi);
+    for (std::uint32_t row = 0; row <= rows; ++row) {
+        for (std::uint32_t column = 0; column <= columns; ++column) {
+            const Float v = Float(row) / Float(rows) * pi, u = Float(column) / Float(columns) * Float(2) * pi;
+            const glm::vec3 p(-std::cos(u) * std::sin(v), std::cos(v), std::sin(u) * std::sin(v));
+            scene.positions.push_back(glm::dvec3(3, 2, 1) + 0.25 * glm::dvec3(p));
+        }
+    }
+    for (std::uint32_t row = 0; row < rows; ++row) {
+        for (std::uint32_t column = 0; column < columns; ++column) {
+            const std::uint32_t b = row * (columns + 1) + column, a = b + 1, c = b + columns + 1, d = c + 1;
+            if (row > 0) scene.triangles.push_back({{a, b, d}, material});
+            if (row + 1 < rows) scene.triangles.push_back({{b, c, d}, material});
+        }
+    }
+    const std::vector<Shell> shells = shells_of(scene);
+    ASSERT_EQ(shells.size(), 1u);
+    EXPECT_EQ(shells[0].triangles.size(), scene.triangles.size());
+    EXPECT_TRUE(shells[0].is_closed()) << shells[0].open_edges << " open, " << shells[0].twisted_edges << " twisted";
+}
+
+TEST(Shell, WhoseSeamsDifferByRoundingIsClosed) {
+    for (const std::uint32_t columns : {3, 8, 32, 500}) {
+        SCOPED_TRACE(columns);
+        expect_closed_in_rows_of<float>(columns, columns / 2 + 1);
+        expect_closed_in_rows_of<double>(columns, columns / 2 + 1);
+    }
+}
+
+// What is apart by more than rounding stays so: here a gap of 10^-5 of the box.
+TEST(Shell, WithAGapIsOpen) {
+    Scene scene = box_scene();
+    for (const std::size_t i : {0, 1}) {
+        for (const std::uint32_t vertex : scene.triangles[i].vertex) scene.positions[vertex] *= 1.0 + 1e-5;
+    }
+    EXPECT_FALSE(shells_of(scene).front().is_closed());
+}
+
 TEST(Shell, WithoutAFaceHasItsEdgesOpen) {
     Scene scene = box_scene();
     scene.triangles.resize(10);

@@ -12,8 +12,8 @@
 
 namespace vkcppm {
 
-/// Triangles that hang together by edges. Corners at the same position are one: glTF repeats a vertex at every seam.
-/// All are in world space or of one shared mesh; measures are those of its space.
+/// Triangles that hang together by edges. Corners at the same position are one, but for rounding: glTF repeats a vertex
+/// at every seam. All are in world space or of one shared mesh; measures are those of its space.
 struct Shell {
     std::vector<std::uint32_t> triangles;  // into Scene::triangles, ascending
     std::size_t open_edges = 0;            // edges of an odd number of triangles

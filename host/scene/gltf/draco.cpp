@@ -1,5 +1,6 @@
 #include "scene/gltf/draco.h"
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
@@ -13,6 +14,7 @@
 #include <draco/compression/mesh/mesh_sequential_decoder.h>
 #include <draco/core/varint_decoding.h>
 
+#include "scene/bad_scene.h"
 #include "scene/gltf/accessor.h"
 #include "scene/gltf/limits.h"
 #include "scene/gltf/schema.h"
@@ -274,9 +276,20 @@ private:
     std::size_t decoded_bytes_ = 0;
 };
 
+/// Whether a program without the extension could show the primitive: all of its accessors have data of their own.
+bool has_fallback(const GltfFile& file, const json& primitive) {
+    const json required = file.document.value("extensionsRequired", json::array());
+    if (std::ranges::find(required, extension) != required.end()) return false;
+    const auto has_data = [&](const json& accessor) {
+        return file.document["accessors"][accessor.get<std::size_t>()].contains("bufferView");
+    };
+    return std::ranges::all_of(primitive["attributes"], has_data) &&
+           (!primitive.contains("indices") || has_data(primitive["indices"]));
+}
+
 }  // namespace
 
-void decode_draco(GltfFile& file) {
+void decode_draco(GltfFile& file, Warnings& warnings) {
     std::set<std::size_t> shown;
     for (const json& node : file.document.value("nodes", json::array())) {
         if (node.contains("mesh")) shown.insert(node["mesh"].get<std::size_t>());
@@ -293,7 +306,16 @@ void decode_draco(GltfFile& file) {
             extensions->erase(extension);  // tinygltf would decode it, unchecked
             if (!shown.contains(mesh)) continue;
             if (!decoder) decoder.emplace(file);
-            decoder->decode(primitives[i], source, fmt::format("meshes[{}].primitives[{}]", mesh, i));
+            const std::string object = fmt::format("meshes[{}].primitives[{}]", mesh, i);
+            const json uncompressed = primitives[i];
+            try {
+                decoder->decode(primitives[i], source, object);
+            } catch (const Error&) {
+                if (!has_fallback(file, uncompressed)) throw;
+                primitives[i] = uncompressed;
+                warnings.add("its data cannot be read, what the file keeps for other programs is shown",
+                             fmt::format("{}.extensions.{}", object, extension));
+            }
         }
     }
 }

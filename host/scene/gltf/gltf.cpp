@@ -20,6 +20,7 @@
 #include "scene/gltf/nodes.h"
 #include "scene/gltf/schema.h"
 #include "scene/gltf/skins.h"
+#include "scene/gltf/specular_glossiness.h"
 #include "scene/gltf/variants.h"
 #include "scene/gltf/views.h"
 #include "scene/warnings.h"
@@ -80,9 +81,8 @@ std::uint64_t hash_of(const GltfOptions& options, std::uint64_t hash) {
     return hash;
 }
 
-Scene read_scene(GltfFile& file, tinygltf::Model& model, const GltfOptions& options) {
+Scene read_scene(GltfFile& file, tinygltf::Model& model, const GltfOptions& options, Warnings& warnings) {
     Scene scene;
-    Warnings warnings;
     warn_of_ignored_parts(file, options, warnings);
     GltfViews views(file);
     GltfAccessors accessors(file, model, views);
@@ -122,10 +122,12 @@ Scene read_scene(GltfFile& file, tinygltf::Model& model, const GltfOptions& opti
 Scene load_gltf(const std::filesystem::path& path, const GltfOptions& options) {
     try {
         GltfFile file = read_gltf_file(path, options.root);
-        decode_draco(file);
+        Warnings warnings;
+        decode_draco(file, warnings);
+        convert_specular_glossiness(file);
         change_materials(file, options.set);
         tinygltf::Model model = parse_model(file);
-        Scene scene = read_scene(file, model, options);
+        Scene scene = read_scene(file, model, options, warnings);
         scene.file = path;
         return scene;
     } catch (const Error&) {

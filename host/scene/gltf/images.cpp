@@ -1,5 +1,7 @@
 #include "scene/gltf/images.h"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -19,7 +21,21 @@ using nlohmann::json;
 GltfImages::GltfImages(const GltfFile& file, GltfViews& views, Warnings& warnings)
     : file_(file), views_(views), warnings_(warnings), hash_(file.hash) {}
 
-std::optional<std::uint32_t> GltfImages::index(std::size_t image) {
+namespace {
+
+/// Puts the roughness of texels whose alpha is glossiness where a metallic-roughness texture has it.
+void make_roughness(std::vector<std::uint8_t>& rgba, double factor) {
+    for (std::size_t i = 0; i < rgba.size(); i += 4) {
+        const double roughness = 255.0 - std::clamp(factor, 0.0, 1.0) * rgba[i + 3];
+        rgba[i] = rgba[i + 2] = 0;
+        rgba[i + 1] = std::uint8_t(std::lround(roughness));
+        rgba[i + 3] = 255;
+    }
+}
+
+}  // namespace
+
+std::optional<std::uint32_t> GltfImages::index(std::size_t image, std::optional<double> glossiness) {
     const json& source = file_.document["images"][image];
     const std::string object = fmt::format("images[{}]", image);
     const std::string uri = source.value("uri", ""), name = source.value("name", "");
@@ -27,11 +43,12 @@ std::optional<std::uint32_t> GltfImages::index(std::size_t image) {
     if (has_view == source.contains("uri")) {
         bad_scene(file_.name, object, json_text(source), "it must have either a uri or a bufferView");
     }
-    const auto [found, is_new] = by_source_.try_emplace(has_view ? source["bufferView"].dump() : "uri " + uri);
+    const std::string use = glossiness ? fmt::format("glossiness {} ", *glossiness) : "";
+    const auto [found, is_new] = by_source_.try_emplace(use + (has_view ? source["bufferView"].dump() : "uri " + uri));
     if (!is_new) return found->second;
 
     if (has_view) {
-        found->second = add({name, object, {}, views_.bytes(source["bufferView"].get<std::size_t>())});
+        found->second = add({name, object, {}, views_.bytes(source["bufferView"].get<std::size_t>()), glossiness});
         return found->second;
     }
     std::string why;
@@ -40,7 +57,7 @@ std::optional<std::uint32_t> GltfImages::index(std::size_t image) {
         warnings_.add("its textures are ignored, the image is absent", fmt::format("{} ({})", object, why));
         return found->second;
     }
-    Source own{name, object, std::move(*bytes), {}};
+    Source own{name, object, std::move(*bytes), {}, glossiness};
     if (!is_data_uri(uri)) {
         if (name.empty()) own.name = uri;
         own.object = fmt::format("{} ({})", object, json_text(uri));
@@ -52,7 +69,8 @@ std::optional<std::uint32_t> GltfImages::index(std::size_t image) {
 
 /// The place of the picture among those to decode; none, with a warning, where its format is foreign.
 std::optional<std::uint32_t> GltfImages::add(Source source) {
-    const auto& [name, object, own_bytes, bytes] = source;
+    const std::string &name = source.name, &object = source.object;
+    const std::span<const std::uint8_t> bytes = source.bytes;
     if (const std::string_view format = foreign_format(bytes); !format.empty()) {
         warnings_.add(
             fmt::format("its textures are ignored, this program lacks {}: export PNG, JPEG or WebP instead", format),
@@ -84,10 +102,11 @@ std::optional<std::uint32_t> GltfImages::add(Source source) {
 }
 
 std::vector<TextureImage> GltfImages::take_images() {
-    std::vector<std::string> broken(images_.size());  // why; empty: it is not
+    std::vector<std::string> broken(images_.size()), flaws(images_.size());  // why; empty: it is not
     tbb::parallel_for(std::size_t(0), images_.size(), [&](std::size_t i) {
         try {
-            images_[i].rgba = decode_picture(sources_[i].bytes);
+            images_[i].rgba = decode_picture(sources_[i].bytes, flaws[i]);
+            if (sources_[i].glossiness) make_roughness(images_[i].rgba, *sources_[i].glossiness);
             Bytes().swap(sources_[i].own_bytes);
         } catch (const std::runtime_error& error) {
             broken[i] = error.what();
@@ -95,6 +114,8 @@ std::vector<TextureImage> GltfImages::take_images() {
     });
     for (std::size_t i = 0; i < broken.size(); ++i) {
         if (!broken[i].empty()) bad_scene(file_.name, sources_[i].object, "unreadable", broken[i]);
+        if (flaws[i].empty()) continue;
+        warnings_.add("it is damaged, what can be read is used", fmt::format("{} ({})", sources_[i].object, flaws[i]));
     }
     return std::move(images_);
 }

@@ -23,9 +23,10 @@ public:
     /// The place of images[i] among those to decode, the next one on its first use; images with one source share it.
     /// None, with a warning, where its file is not there, lies outside of the file's root or is in a format that only
     /// an extension allows (KTX2, DDS): the factor alone is a picture that still says something.
+    /// glossiness: the factor of that in alpha, of which the image is to hold the roughness, 1 less it, in green.
     /// Throws Error(bad_scene) where the image has no source or two, is broken, or is too large, alone or with the
     /// others.
-    std::optional<std::uint32_t> index(std::size_t image);
+    std::optional<std::uint32_t> index(std::size_t image, std::optional<double> glossiness = {});
 
     /// Decodes all, each once, on all cores, and hands them over in the order of index(). Throws Error(bad_scene) where
     /// one is broken: the first.
@@ -41,6 +42,7 @@ private:
         std::string object;  // what it is in the file, for messages
         std::vector<std::uint8_t> own_bytes;
         std::span<const std::uint8_t> bytes;  // those, or of a bufferView
+        std::optional<double> glossiness{};
     };
     std::optional<std::uint32_t> add(Source source);
 

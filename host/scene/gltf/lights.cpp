@@ -18,21 +18,22 @@ namespace vkcppm {
 
 namespace {
 
-/// KHR_lights_punctual: 0 <= inner < outer <= pi/2.
-void read_cone(const tinygltf::SpotLight& spot, const std::string& object, PunctualLight& light,
-               const std::string& file, Warnings& warnings) {
+/// KHR_lights_punctual: 0 <= inner < outer <= pi/2. False, with a warning, where nothing is in the cone.
+bool read_cone(const tinygltf::SpotLight& spot, const std::string& object, PunctualLight& light, Warnings& warnings) {
     constexpr double right_angle = std::numbers::pi / 2.0;
     constexpr double rounding = 1e-6;            // pi/2 written as float lies above pi/2
     constexpr double widest_inner = 1.0 - 1e-3;  // of outer: a hard edge that is still a falloff
     if (!(spot.outerConeAngle > 0.0)) {
-        bad_scene(file, object + ".spot.outerConeAngle", fmt::to_string(spot.outerConeAngle),
-                  "it must lie above 0, to pi/2");
+        warnings.add("its light is skipped, the cone must be wider than 0",
+                     fmt::format("{}.spot.outerConeAngle = {}", object, spot.outerConeAngle));
+        return false;
     }
     const double outer =
         clamped(spot.outerConeAngle, 0.0, right_angle + rounding, object + ".spot.outerConeAngle", warnings);
     light.outer_cone = std::min(outer, right_angle);
     light.inner_cone =
         clamped(spot.innerConeAngle, 0.0, widest_inner * light.outer_cone, object + ".spot.innerConeAngle", warnings);
+    return true;
 }
 
 /// Whether a file is of Blender's exporter of version 3.4 or later, which multiplies watts by 683 unless it is told not
@@ -96,7 +97,9 @@ std::optional<PunctualLight> read_light(const GltfFile& file, const tinygltf::Mo
             return std::nullopt;
         }
     }
-    if (light.kind == PunctualLight::Kind::spot) read_cone(source.spot, object, light, file.name, warnings);
+    if (light.kind == PunctualLight::Kind::spot && !read_cone(source.spot, object, light, warnings)) {
+        return std::nullopt;
+    }
     const nlohmann::json& json = file.document["extensions"]["KHR_lights_punctual"]["lights"][light_index];
     if (light.kind != PunctualLight::Kind::directional && json.contains("range")) {
         if (!(source.range > 0.0)) {

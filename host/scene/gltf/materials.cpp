@@ -1,11 +1,13 @@
 #include "scene/gltf/materials.h"
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
 
 #include <glm/gtc/type_ptr.hpp>
 
 #include "scene/gltf/limits.h"
+#include "scene/gltf/specular_glossiness.h"
 #include "scene/gltf/values.h"
 
 namespace vkcppm {
@@ -97,7 +99,11 @@ public:
         if (material.unlit) return;
 
         if (material.metallic > 0.0f || material.roughness > 0.0f) {
-            material.metallic_roughness_texture = texture(pbr, "metallicRoughnessTexture");
+            const std::optional<double> glossiness = glossiness_factor(source_);
+            material.metallic_roughness_texture = texture(pbr, "metallicRoughnessTexture", glossiness);
+            if (glossiness && !material.metallic_roughness_texture) {
+                material.roughness *= number(1.0 - *glossiness, 0.0, 1.0, "roughnessFactor");
+            }
         }
         material.normal_texture = normal_texture(source_, "normalTexture", material.normal_scale);
         if (material.emission != glm::vec3(0.0f)) material.emissive_texture = texture(source_, "emissiveTexture");
@@ -131,7 +137,8 @@ private:
     }
 
     /// A texture of `parent` by its member's name; none where it has none, or, with a warning, no image for it.
-    std::optional<Texture> texture(const json& parent, const char* name) {
+    /// glossiness: see GltfImages::index.
+    std::optional<Texture> texture(const json& parent, const char* name, std::optional<double> glossiness = {}) {
         const auto found = parent.find(name);
         if (found == parent.end()) return std::nullopt;
         const json& info = *found;
@@ -151,7 +158,8 @@ private:
                           fmt::format("textures[{}] ({})", index, member(name)));
             return std::nullopt;
         }
-        const std::optional<std::uint32_t> image = images_.index(named["source"].get<std::size_t>());
+        const std::optional<std::uint32_t> image = &named == &webp ? image_of_webp(source, webp, index, glossiness)
+                                                                   : images_.index(image_number(source), glossiness);
         if (!image) return std::nullopt;
 
         Texture texture;
@@ -165,6 +173,26 @@ private:
         }
         set_transform(texture, transform, member(name));
         return texture;
+    }
+
+    static std::size_t image_number(const json& source) { return source["source"].get<std::size_t>(); }
+
+    /// The image of textures[index] that EXT_texture_webp names; where it is not there, or cannot be read and the file
+    /// does not require the extension, the one beside it, if any.
+    std::optional<std::uint32_t> image_of_webp(const json& source, const json& webp, std::size_t index,
+                                               std::optional<double> glossiness) {
+        const json required = file_.document.value("extensionsRequired", json::array());
+        const bool is_required = std::ranges::find(required, "EXT_texture_webp") != required.end();
+        const bool has_other = source.contains("source");
+        try {
+            if (const auto image = images_.index(image_number(webp), glossiness)) return image;
+        } catch (const Error&) {
+            if (is_required) throw;
+            warnings_.add(
+                fmt::format("its WebP cannot be read, {}", has_other ? "the image beside it is used" : "it is ignored"),
+                fmt::format("textures[{}]", index));
+        }
+        return has_other ? images_.index(image_number(source), glossiness) : std::nullopt;
     }
 
     /// KHR_texture_transform: scaled, then turned, then moved. A positive angle turns the coordinates counter-clockwise
@@ -202,6 +230,10 @@ std::vector<Material> read_materials(const GltfFile& file, const std::vector<boo
                                      Warnings& warnings) {
     std::vector<Material> materials;
     for (std::size_t i = 0; i < is_used.size(); ++i) {
+        if (file.document["materials"][i].value("extensions", json::object()).contains(specular_glossiness_extension)) {
+            warnings.add("rendered as a dielectric of that specular colour, by KHR_materials_specular",
+                         fmt::format("materials[{}].{}", i, specular_glossiness_extension));
+        }
         MaterialReader reader(file, i, images, warnings);
         materials.push_back(reader.factors());
         if (is_used[i]) reader.add_textures(materials.back());

@@ -116,13 +116,15 @@ glm::dmat4 local_transform(const GltfFile& file, const tinygltf::Model& model, i
                 warnings.add("ignored beside a matrix", fmt::format("nodes[{}].{}", index, member));
             }
         }
-        const glm::dmat4 matrix = glm::make_mat4(node.matrix.data());
+        glm::dmat4 matrix = glm::make_mat4(node.matrix.data());
         for (int column = 0; column < 4; ++column) {
+            constexpr double rounding = 1e-5;  // of products of matrices in floats
             const double expected = column == 3 ? 1.0 : 0.0;
-            if (matrix[column][3] != expected) {
+            if (!(std::abs(matrix[column][3] - expected) <= rounding)) {
                 bad_scene(file.name, fmt::format("nodes[{}].matrix[{}]", index, 4 * column + 3),
                           fmt::to_string(matrix[column][3]), fmt::format("it must be {}", expected));
             }
+            matrix[column][3] = expected;
         }
         return matrix;
     }

@@ -121,19 +121,26 @@ public:
 
     Extent size() const { return {std::uint32_t(width_), std::uint32_t(height_)}; }
 
-    std::vector<std::uint8_t> rgba() {
+    std::vector<std::uint8_t> rgba(std::string& flaw) {
         std::vector<std::uint8_t> texels(4 * size().pixels());
         // A small file may hold endless passes over the picture: the flag ends them at 500.
-        check(tjDecompress2(decoder_.get(), bytes_.data(), bytes_.size(), texels.data(), width_, 4 * width_, height_,
-                            TJPF_RGBA, TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS));
+        const int result = tjDecompress2(decoder_.get(), bytes_.data(), bytes_.size(), texels.data(), width_,
+                                         4 * width_, height_, TJPF_RGBA, TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS);
+        // Of all warnings that of bytes too many alone is not about data that is missing or wrong.
+        if (result != 0 && message().find("extraneous bytes before marker") != std::string::npos) {
+            flaw = message();
+        } else {
+            check(result);
+        }
         return texels;
     }
 
 private:
-    /// Warnings count as well: they are about data that is missing or damaged.
     void check(int result) {
-        if (result != 0) throw std::runtime_error(fmt::format("broken JPEG: {}", tjGetErrorStr2(decoder_.get())));
+        if (result != 0) throw std::runtime_error(fmt::format("broken JPEG: {}", message()));
     }
+
+    std::string message() { return tjGetErrorStr2(decoder_.get()); }
 
     Encoded bytes_;
     std::unique_ptr<void, int (*)(tjhandle)> decoder_;
@@ -179,8 +186,22 @@ bool is_webp(Encoded bytes) {
 }
 
 std::string_view foreign_format(Encoded bytes) {
-    if (starts_with(bytes, "\xabKTX 20\xbb")) return "KTX2";
-    if (starts_with(bytes, "DDS ")) return "DDS";
+    struct Format {
+        std::size_t offset;
+        std::string_view signature, name;
+    };
+    using namespace std::string_view_literals;
+    static constexpr Format formats[] = {
+        {0, "\xabKTX 20\xbb", "KTX2"}, {0, "\xabKTX 11\xbb", "KTX"}, {0, "DDS ", "DDS"},
+        {4, "ftypavif", "AVIF"},       {0, "GIF8", "GIF"},           {0, "BM", "BMP"},
+        {0, "II*\0"sv, "TIFF"},        {0, "MM\0*"sv, "TIFF"},       {0, "v/1\1", "OpenEXR"},
+        {0, "#?", "Radiance"},         {0, "\xff\x0a", "JPEG XL"},   {4, "JXL ", "JPEG XL"},
+    };
+    for (const Format& format : formats) {
+        if (bytes.size() >= format.offset && starts_with(bytes.subspan(format.offset), format.signature)) {
+            return format.name;
+        }
+    }
     return {};
 }
 
@@ -191,9 +212,9 @@ Extent picture_size(Encoded bytes) {
     refuse_format();
 }
 
-std::vector<std::uint8_t> decode_picture(Encoded bytes) {
+std::vector<std::uint8_t> decode_picture(Encoded bytes, std::string& flaw) {
     if (is_png(bytes)) return PngReader(bytes).rgba();
-    if (is_jpeg(bytes)) return JpegReader(bytes).rgba();
+    if (is_jpeg(bytes)) return JpegReader(bytes).rgba(flaw);
     if (is_webp(bytes)) return WebpReader(bytes).rgba();
     refuse_format();
 }

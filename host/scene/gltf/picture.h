@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace vkcppm {
 /// Whether the bytes begin like a WebP: one of a single colour takes as many as it likes to have texels.
 bool is_webp(std::span<const std::uint8_t> bytes);
 
-/// The name of the format where it is one of those that glTF extensions allow and this program lacks, else empty.
+/// The name of the format where it is a known one that this program lacks, else empty.
 std::string_view foreign_format(std::span<const std::uint8_t> bytes);
 
 /// Width and height by the header alone, before memory for the texels is needed.
@@ -23,7 +24,8 @@ Extent picture_size(std::span<const std::uint8_t> bytes);
 /// [4 x width x height] red, green, blue, alpha; first row on top. Grey, palettes and a transparent colour are
 /// expanded, 16 bits are rounded to 8, alpha is 255 where there is none. The values are as in the file: gamma, colour
 /// profiles and orientation are ignored, as glTF 2.0, section 3.8.3, asks.
-/// Throws std::runtime_error with the reason where the file is broken, even in part.
-std::vector<std::uint8_t> decode_picture(std::span<const std::uint8_t> bytes);
+/// flaw: what is odd about a file all of whose texels are there. Throws std::runtime_error with the reason where the
+/// file is broken, even in part.
+std::vector<std::uint8_t> decode_picture(std::span<const std::uint8_t> bytes, std::string& flaw);
 
 }  // namespace vkcppm

@@ -271,9 +271,11 @@ constexpr Field pbr_fields[] = {
     object("metallicRoughnessTexture", texture_info_fields),
 };
 constexpr Field texture(const char* name) { return object(name, texture_info_fields); }
+constexpr Field color(const char* name) { return numbers(name, 3); }
+constexpr Field color_with_alpha(const char* name) { return numbers(name, 4); }
 // clang-format off
 #define FACTOR(member, json, standard, low, high) number(json),
-#define COLOR(member, json, standard, high) numbers(json, 3),
+#define COLOR(member, json, standard, high) color(json),
 #define TEXTURE(NUMBER, member, json, words, encoding, where) texture(json),
 #define NORMALS(NUMBER, member, json, words, scale, where) object(json, normal_texture_fields),
 #define OTHER(kind, json) kind(json),

@@ -1,5 +1,7 @@
 #include "scene/gltf/uri.h"
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <string>
 
@@ -17,8 +19,12 @@ int base64_digit(char c) {
     return -1;
 }
 
-std::optional<std::vector<std::uint8_t>> decode_base64(std::string_view text) {
-    for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) text.remove_suffix(1);
+bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\f' || c == '\r'; }
+
+/// Spaces and ends of lines, by which some programs break long texts, count for nothing.
+std::optional<std::vector<std::uint8_t>> decode_base64(std::string text) {
+    std::erase_if(text, is_space);
+    for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) text.pop_back();
     if (text.size() % 4 == 1) return std::nullopt;  // six bits make no byte
     std::vector<std::uint8_t> bytes;
     bytes.reserve(text.size() / 4 * 3 + 2);
@@ -37,43 +43,50 @@ std::optional<std::vector<std::uint8_t>> decode_base64(std::string_view text) {
     return bytes;
 }
 
-std::optional<std::string> percent_decode(std::string_view text) {
+/// A percent sign before anything but two digits stands for itself, as in a URL of a browser: file names have some.
+std::string percent_decode(std::string_view text) {
     std::string decoded;
+    decoded.reserve(text.size());
     for (std::size_t i = 0; i < text.size(); ++i) {
-        if (text[i] != '%') {
-            decoded += text[i];
-            continue;
-        }
         unsigned value = 0;
-        const std::string_view digits = text.substr(i + 1, 2);
+        const std::string_view digits = text.substr(i + 1, text[i] == '%' ? 2 : 0);
         const auto end = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16).ptr;
-        if (digits.size() != 2 || end != digits.data() + 2) return std::nullopt;
-        decoded += char(value);
-        i += 2;
+        const bool is_escape = digits.size() == 2 && end == digits.data() + 2;
+        decoded += is_escape ? char(value) : text[i];
+        i += is_escape ? 2 : 0;
     }
     return decoded;
 }
 
+/// Whether they are the same but for capitals. word: in small letters.
+bool is_word(std::string_view text, std::string_view word) {
+    return std::ranges::equal(text, word, {}, [](char c) { return char(std::tolower(static_cast<unsigned char>(c))); });
+}
+
 }  // namespace
 
-bool is_data_uri(std::string_view uri) { return uri.starts_with("data:"); }
+bool is_data_uri(std::string_view uri) { return is_word(uri.substr(0, 5), "data:"); }
 
 std::optional<std::vector<std::uint8_t>> decode_data_uri(std::string_view uri) {
     const std::size_t comma = uri.find(',');
     if (comma == std::string_view::npos) return std::nullopt;
-    const std::string_view data = uri.substr(comma + 1);
-    if (uri.substr(0, comma).ends_with(";base64")) return decode_base64(data);
-    const std::optional<std::string> text = percent_decode(data);
-    if (!text) return std::nullopt;
-    return std::vector<std::uint8_t>(text->begin(), text->end());
+    constexpr std::string_view base64 = ";base64";
+    const std::string_view type = uri.substr(0, comma);
+    std::string data = percent_decode(uri.substr(comma + 1));
+    if (type.size() >= base64.size() && is_word(type.substr(type.size() - base64.size()), base64)) {
+        return decode_base64(std::move(data));
+    }
+    return std::vector<std::uint8_t>(data.begin(), data.end());
 }
 
 std::optional<std::filesystem::path> resolve_uri(const std::filesystem::path& folder, std::string_view uri) {
     const std::size_t colon = uri.find_first_of(":/");
     if (colon != std::string_view::npos && uri[colon] == ':') return std::nullopt;  // a scheme such as http:
-    const std::optional<std::string> decoded = percent_decode(uri);
-    if (!decoded || decoded->empty() || decoded->find('\0') != std::string::npos) return std::nullopt;
-    const auto path = std::filesystem::path(*decoded).lexically_normal();
+    std::string separated(uri);
+    std::ranges::replace(separated, '\\', '/');  // of programs on Windows
+    const std::string decoded = percent_decode(separated);
+    if (decoded.empty() || decoded.find('\0') != std::string::npos) return std::nullopt;
+    const auto path = std::filesystem::path(decoded).lexically_normal();
     if (path.is_absolute()) return std::nullopt;
     return folder / path;
 }

@@ -15,8 +15,8 @@ bool is_data_uri(std::string_view uri);
 /// The bytes of a data URI of any media type, in base64 or percent-encoded (RFC 2397); nothing where it is malformed.
 std::optional<std::vector<std::uint8_t>> decode_data_uri(std::string_view uri);
 
-/// The path, percent-decoded (RFC 3986), that a relative URI means from `folder` on; nothing where the URI has a
-/// scheme, is absolute, is empty, or holds a bad escape or a zero byte.
+/// The path, percent-decoded (RFC 3986), that a relative URI means from `folder` on, backslashes taken for slashes;
+/// nothing where the URI has a scheme, is absolute, is empty, or holds a zero byte.
 std::optional<std::filesystem::path> resolve_uri(const std::filesystem::path& folder, std::string_view uri);
 
 }  // namespace vkcppm

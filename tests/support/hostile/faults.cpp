@@ -311,11 +311,6 @@ const std::vector<Fault>& faults() {
              add_light(b, {{"type", "point"}, {"intensity", 1e300}});
          },
          {"lights[0].intensity is 1e+300", "3.4028"}},
-        {"ConeZero",
-         [](auto& b) {
-             add_light(b, {{"type", "spot"}, {"spot", {{"outerConeAngle", 0}}}});
-         },
-         {"lights[0].spot.outerConeAngle is 0", "pi/2"}},
         {"EmissionNegative",
          [](auto& b) {
              add_material(b, {{"emissiveFactor", {0, -0.5, 0}}});

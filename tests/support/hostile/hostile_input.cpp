@@ -76,7 +76,8 @@ std::string read_texture(const std::string& bytes) {
         const Extent size = picture_size(data);
         if (size.pixels() == 0) return "a texture without texels";
         if (size.width > 16384 || size.height > 16384 || size.pixels() > (1u << 22)) return "";
-        return decode_picture(data).size() == 4 * size.pixels() ? "" : "a texture of another size than it has";
+        std::string flaw;
+        return decode_picture(data, flaw).size() == 4 * size.pixels() ? "" : "a texture of another size than it has";
     } catch (const std::runtime_error& error) {
         return std::string_view(error.what()).empty() ? "no reason" : "";
     }

@@ -236,6 +236,12 @@ const std::vector<Case>& material_cases() {
                  return x < 3 && y > 2 ? glm::vec4(1.0f) : glm::vec4(0.3f, 0.1f, 0.05f, 1.0f);
              });
          }},
+        {"clearcoat_lamp",
+         [](Scene& s, Settings&) {
+             s.materials[lamp].clearcoat = 1.0f;
+             s.materials[lamp].clearcoat_texture =
+                 add_image(s, 4, 4, [](auto x, auto) { return glm::vec4(x < 2 ? 1.0f : 0.25f, 0.0f, 0.0f, 1.0f); });
+         }},
         {"unlit", [](Scene& s, Settings&) { s.materials[pane].unlit = true; }},
         {"lens",
          [](Scene&, Settings& settings) {
