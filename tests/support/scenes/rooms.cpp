@@ -239,7 +239,8 @@ const std::vector<Case>& material_cases() {
              s.materials[floor_].sheen_color_texture =
                  add_image(s, 1, 4, [](auto, auto y) { return glm::vec4(1.0f, 0.3f * float(y), 0.5f, 1.0f); });
              make_glossy(s, 0.4f);
-             for (const auto i : {floor_, ball, walls}) {
+             make_glass(s.materials[pane], 0.0f, 0.0f);
+             for (const auto i : {floor_, ball, walls, pane}) {
                  s.materials[i].sheen_color = {0.9f, 0.7f, 0.8f};
                  s.materials[i].sheen_roughness = i == ball ? 0.8f : 0.3f;
              }
