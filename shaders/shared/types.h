@@ -54,8 +54,8 @@ using uint = std::uint32_t;
 //                                      SurfaceTraits (host/flat/surface.h)
 //   SCENE(bit, NAME, words)            host/flat/features.cpp asks the scene
 //   SETTING(bit, NAME, words)          the settings ask for it
-// words: its name for people. In the order of bits. All of the word are in use: what params say at no cost, as a lens
-// of radius 0, is no feature.
+// words: its name for people. In the order of bits, all of which are in use: what params say at no cost, as that there
+// is no lens by its radius of 0, is no feature.
 // clang-format off
 #define FEATURE_TABLE(MATERIAL, SCENE, SETTING)                                                                \
     MATERIAL(0, REFLECTION, reflection, reflects())           /* a lobe of reflection: metal, coat or glass */ \

@@ -29,7 +29,7 @@ vec3 sheen_sample(Bsdf b, Surface surface, Facet facet, vec2 u, bool radiance, i
     direction = normalize(from_frame(surface.normal, sample_azimuth(u.x, u.y)));
     density = 0.5 / PI;
     Pair pair = pair_of(surface, wo, direction);
-    return pair.reflects ? sheen_between(b, surface, pair) * (pair.wi_n / density) : vec3(0.0);
+    return pair.reflects ? sheen_between(b, surface, pair) * (max(0.0, pair.wi_n) / density) : vec3(0.0);
 }
 
 float sheen_density(Bsdf b, Surface surface, Pair pair, float weight) {
