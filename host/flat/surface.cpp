@@ -73,6 +73,8 @@ template <> LobeTraits lobe_of<Lobe::clearcoat>(const Material& m) {
     return of_facets(m.clearcoat_roughness, m.clearcoat_roughness_texture);
 }
 
+template <> LobeTraits lobe_of<Lobe::sheen>(const Material& m) { return {.wide = m.sheen_color != black}; }
+
 enum class Encoding { linear, srgb };
 
 struct NamedTexture {
@@ -182,6 +184,8 @@ gpu::SurfaceMaterial surface_of(const Material& m, const SurfaceTraits& traits, 
         surface.film_index = m.iridescence_ior;
         surface.film_thickness = 1e-3f * glm::vec2(m.iridescence_thickness_minimum, m.iridescence_thickness_maximum);
     }
+    surface.sheen_color = m.sheen_color;
+    surface.sheen_roughness = m.sheen_roughness;
     surface.clearcoat = m.clearcoat;
     surface.clearcoat_roughness = m.clearcoat_roughness;
     surface.alpha_cutoff = m.alpha_cutoff;
@@ -229,6 +233,8 @@ std::string describe_material(const Material& m, const SurfaceTraits& t) {
     if (t.iridescent)
         parts.push_back(fmt::format("thin film {:g} of ior {:g}, {:g} nm", m.iridescence, m.iridescence_ior,
                                     m.iridescence_thickness_maximum));
+    if (t.has(Lobe::sheen))
+        parts.push_back(fmt::format("sheen {}, {}", text(m.sheen_color), roughness(m.sheen_roughness)));
     if (parts.empty()) parts.push_back("black");
     if (t.alpha)
         parts.push_back(m.alpha == Material::Alpha::mask ? fmt::format("there where alpha >= {:g}", m.alpha_cutoff)

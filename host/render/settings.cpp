@@ -137,11 +137,6 @@ std::vector<Feature> features_of(const Settings& settings) {
     std::vector<Feature> features;
     if (settings.aovs) features.push_back(make_feature(FEATURE_AOVS, "--aovs"));
     if (settings.error) features.push_back(make_feature(FEATURE_ERRORS, "--error"));
-    if (settings.fstop) {
-        features.push_back(make_feature(FEATURE_LENS, fmt::format("--fstop {:g}", *settings.fstop)));
-    } else if (settings.aperture > 0.0) {
-        features.push_back(make_feature(FEATURE_LENS, fmt::format("--aperture {:g}", settings.aperture)));
-    }
     if (settings.caustics) features.push_back(make_feature(FEATURE_SPLIT, "a reference"));
     if (!settings.caustics && settings.direct == direct_sampled)
         features.push_back(make_feature(FEATURE_DIRECT, fmt::format("--direct {}", direct_sampled)));

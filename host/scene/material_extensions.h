@@ -75,6 +75,13 @@ EXTENSION(KHR_materials_iridescence,
     TEXTURE(IRIDESCENCE_THICKNESS, iridescence_thickness_texture, "iridescenceThicknessTexture",
             "iridescence thickness", linear,  // g
             m.iridescence > 0.0f))
+EXTENSION(KHR_materials_sheen,
+    COLOR(sheen_color, "sheenColorFactor", 0.0f, 1.0)
+    FACTOR(sheen_roughness, "sheenRoughnessFactor", 0.0f, 0.0, 1.0)
+    TEXTURE(SHEEN_COLOR, sheen_color_texture, "sheenColorTexture", "sheen colour", srgb,
+            m.sheen_color != glm::vec3(0.0f))
+    TEXTURE(SHEEN_ROUGHNESS, sheen_roughness_texture, "sheenRoughnessTexture", "sheen roughness", linear,  // a
+            m.sheen_color != glm::vec3(0.0f) && m.sheen_roughness > 0.0f))
 EXTENSION(KHR_materials_unlit)
 EXTENSION(KHR_materials_pbrSpecularGlossiness,  // rewritten as what took its place: scene/gltf/specular_glossiness.h
     OTHER(color_with_alpha, "diffuseFactor")

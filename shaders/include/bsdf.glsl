@@ -1,9 +1,9 @@
 // How a surface scatters (BSDF): glTF 2.0, appendix B, and the extensions for specular, transmission, volume, ior,
-// clearcoat, anisotropy, iridescence. Pure functions. A BSDF is a sum of lobes, a row of LOBES and a file in
+// clearcoat, anisotropy, iridescence, sheen. Pure functions. A BSDF is a sum of lobes, a row of LOBES and a file in
 // include/lobes each, over which light paths, eye paths and the path tracer go. A lobe of width 0 is a delta: paths
 // follow it and nothing is gathered on it.
 // What lies below a coat is weakened by 1 - F(wo . h) with the half vector of the pair of directions, so that light
-// paths and eye paths see the same surface.
+// paths and eye paths see the same surface; what lies below sheen by the larger of its albedos in the two directions.
 #ifndef BSDF_GLSL
 #define BSDF_GLSL
 
@@ -15,6 +15,7 @@
 #include "include/ggx.glsl"
 #include "include/sampling.glsl"
 #include "include/scene.glsl"
+#include "include/sheen.glsl"
 #include "include/surface.glsl"
 
 // What a row ROW(number, NAME, name, present) of LOBES (shared/types.h) has in include/lobes/<name>.glsl:
@@ -61,6 +62,7 @@ struct Bsdf {
     float metallic;         // below the film: the share of metal, and reflectances at normal incidence
     vec3 metal0;
     vec3 dielectric0;
+    Sheen sheen;
 };
 
 // Width of anisotropic facets across the tangent at least: a line has no density.
@@ -130,6 +132,15 @@ float below_coat(Bsdf b, float cosine) {
     return 1.0 - (b.coat0 + (b.coat90 - b.coat0) * schlick_power(cosine));
 }
 
+// What the sheen leaves of light that a lobe scatters between directions of these cosines to the shading normal: the
+// specification's albedo scaling of all that is not on top.
+float below_sheen(Bsdf b, float wo_n, float wi_n) {
+    if (!HAS_SHEEN) return 1.0;
+    return below_sheen(b.sheen, sheen_side(b.sheen, wo_n), sheen_side(b.sheen, wi_n));
+}
+
+bool lies_below_sheen(uint lobe) { return HAS_SHEEN && lobe != LOBE_SHEEN && lobe != LOBE_CLEARCOAT; }
+
 // The cosine by which the coat is weighed when a lobe is chosen: at h = n.
 float coat_cosine(Surface surface, vec3 wo) { return min(1.0, dot(surface.clearcoat_normal, wo)); }
 
@@ -177,13 +188,14 @@ Bsdf bsdf_of(SurfaceMaterial material, float ior, bool front) {
     }
     b.clearcoat = material.clearcoat;
     b.clearcoat_alpha = alpha_of(material.clearcoat_roughness);
+    b.sheen = HAS_SHEEN ? sheen_of(material.sheen_color, material.sheen_roughness) : no_sheen();
     return b;
 }
 
 // Of a surface that takes all light in.
 Bsdf black() {
     return Bsdf(vec3(0.0), 0.0, 1.0, vec3(0.0), 0.0, vec3(0.0), 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, false, 1.0, vec3(1.0),
-                0.0, 1.0, 0.0, 0.0, vec3(0.0), vec3(0.0));
+                0.0, 1.0, 0.0, 0.0, vec3(0.0), vec3(0.0), no_sheen());
 }
 
 // Of a boundary of a solid that light does not see: all of it goes straight on.
@@ -231,6 +243,7 @@ Facets base_facets(Bsdf b, Surface surface) {
 #include "include/lobes/reflection.glsl"
 #include "include/lobes/transmission.glsl"
 #include "include/lobes/clearcoat.glsl"
+#include "include/lobes/sheen.glsl"
 
 // ---- over all lobes ----
 
@@ -282,6 +295,10 @@ LobeWeights lobes_of(Bsdf b, Surface surface, vec3 wo) {
     LobeWeights lobes;
 #define WEIGH(number, NAME, name, present) lobes.of[number] = present ? name##_weight(b, surface, wo) : 0.0;
     LOBES(WEIGH)
+    float cosine = dot(wo, surface.normal);
+    float below = below_sheen(b, cosine, cosine);
+#define WEIGH_BELOW(number, NAME, name, present) if (lies_below_sheen(number)) lobes.of[number] *= below;
+    LOBES(WEIGH_BELOW)
     return lobes;
 }
 
@@ -338,12 +355,17 @@ uint choose_lobe(LobeWeights lobes, float u, out float inverse_probability) {
 vec3 sample_lobe(uint lobe, Bsdf b, Surface surface, vec2 u, bool radiance, inout vec3 direction, out float density) {
     density = DELTA;
     vec3 factor = vec3(0.0);
+    float wo_n = dot(direction, surface.normal);
     // Once for all lobes: software Vulkan runs every branch for every lane.
     Facets facets = facets_of(width_of(lobe, b), normal_of(lobe, surface), stretch_of(lobe, b), surface.tangent);
     Facet facet = sample_facet(facets, -direction, u);
 #define SAMPLE(number, NAME, name, present) \
     if (present && lobe == number) factor = name##_sample(b, surface, facet, u, radiance, direction, density);
     LOBES(SAMPLE)
+    if (HAS_SHEEN) {
+        float below = below_sheen(b, wo_n, dot(direction, surface.normal));
+        factor *= lies_below_sheen(lobe) ? below : 1.0;
+    }
     return factor;
 }
 
@@ -362,9 +384,10 @@ float scatter_density(Bsdf b, Surface surface, LobeWeights lobes, vec3 wo, vec3 
 // weight of its part.
 vec3 rough_bsdf(Bsdf b, Surface surface, vec3 wo, vec3 wi, uint part) {
     Pair pair = pair_of(surface, wo, wi);
+    float below = below_sheen(b, pair.wo_n, pair.wi_n);
     vec3 sum = vec3(0.0);
 #define ADD_VALUE(number, NAME, name, present) \
-    if (present) sum += name##_evaluate(b, surface, pair, part);
+    if (present) sum += (lies_below_sheen(number) ? below : 1.0) * name##_evaluate(b, surface, pair, part);
     LOBES(ADD_VALUE)
     return sum;
 }

@@ -24,7 +24,7 @@ void camera_ray(uint pixel, uint sequence, out vec3 origin, out vec3 direction, 
         eye = params.eye + film.x * params.right - film.y * params.up;
     }
     distance = params.start * length(through);
-    if (HAS_LENS) {
+    if (params.lens_radius > 0.0) {
         // A thin lens: what lies in the plane of focus is met by rays from all of it.
         vec2 u = vec2(stratified(params.seed, sequence, pixel, LENS_DIMENSION),
                       stratified(params.seed, sequence, pixel, LENS_DIMENSION + 1u));

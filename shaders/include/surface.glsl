@@ -184,6 +184,7 @@ bool is_read(int kind) {
     if (kind == TEXTURE_CLEARCOAT_NORMAL) return HAS_NORMAL_MAPS && HAS_CLEARCOAT;
     if (kind == TEXTURE_ANISOTROPY) return HAS_ANISOTROPY;
     if (kind == TEXTURE_IRIDESCENCE || kind == TEXTURE_IRIDESCENCE_THICKNESS) return HAS_IRIDESCENCE;
+    if (kind == TEXTURE_SHEEN_COLOR || kind == TEXTURE_SHEEN_ROUGHNESS) return HAS_SHEEN;
     return true;
 }
 
@@ -239,6 +240,10 @@ SurfaceMaterial material_at(Hit hit, vec3 direction, inout Surface surface) {
             material.iridescence *= texels[TEXTURE_IRIDESCENCE].r;
             material.film_thickness.y = mix(material.film_thickness.x, material.film_thickness.y,
                                             texels[TEXTURE_IRIDESCENCE_THICKNESS].g);
+        }
+        if (HAS_SHEEN) {
+            material.sheen_color *= texels[TEXTURE_SHEEN_COLOR].rgb;
+            material.sheen_roughness *= texels[TEXTURE_SHEEN_ROUGHNESS].a;
         }
         if (HAS_NORMAL_MAPS) {
             float side = surface.front ? 1.0 : -1.0;

@@ -54,7 +54,8 @@ using uint = std::uint32_t;
 //                                      SurfaceTraits (host/flat/surface.h)
 //   SCENE(bit, NAME, words)            host/flat/features.cpp asks the scene
 //   SETTING(bit, NAME, words)          the settings ask for it
-// words: its name for people. In the order of bits.
+// words: its name for people. In the order of bits, all of which are in use: what params say at no cost, as that there
+// is no lens by its radius of 0, is no feature.
 // clang-format off
 #define FEATURE_TABLE(MATERIAL, SCENE, SETTING)                                                                \
     MATERIAL(0, REFLECTION, reflection, reflects())           /* a lobe of reflection: metal, coat or glass */ \
@@ -74,7 +75,7 @@ using uint = std::uint32_t;
     SCENE(14, VERTEX_COLORS, vertex colours)                                                                   \
     MATERIAL(15, ALPHA, alpha, alpha)                         /* surfaces that are partly not there */         \
     MATERIAL(16, UNLIT, unlit surfaces, unlit)                                                                 \
-    SETTING(17, LENS, depth of field)                                                                          \
+    MATERIAL(17, SHEEN, sheen, has(Lobe::sheen))              /* of fibres: include/sheen.glsl */              \
     MATERIAL(18, AREA_LIGHTS, area lights, is_lamp())                                                          \
     SCENE(19, TEXTURED_LIGHTS, textured lights)                                                                \
     SCENE(20, POINT_LIGHTS, point lights)                                                                      \
@@ -105,7 +106,8 @@ FEATURE_TABLE(FEATURE_BIT_OF_MATERIAL, FEATURE_BIT, FEATURE_BIT)
     ROW(0u, DIFFUSE, diffuse, true)                       \
     ROW(1u, REFLECTION, reflection, HAS_REFLECTION)       \
     ROW(2u, TRANSMISSION, transmission, HAS_TRANSMISSION) \
-    ROW(3u, CLEARCOAT, clearcoat, HAS_CLEARCOAT)
+    ROW(3u, CLEARCOAT, clearcoat, HAS_CLEARCOAT)          \
+    ROW(4u, SHEEN, sheen, HAS_SHEEN)
 
 // Eye paths ask for lights where direct light is theirs, and where they may follow a rough lobe. Where light is split
 // photons bring caustics alone, and of those an eye path finds what it meets by delta lobes after it has followed a
@@ -151,7 +153,9 @@ FEATURE_TABLE(FEATURE_BIT_OF_MATERIAL, FEATURE_BIT, FEATURE_BIT)
 #define TEXTURE_ANISOTROPY 10
 #define TEXTURE_IRIDESCENCE 11
 #define TEXTURE_IRIDESCENCE_THICKNESS 12
-#define TEXTURE_COUNT 13
+#define TEXTURE_SHEEN_COLOR 13
+#define TEXTURE_SHEEN_ROUGHNESS 14
+#define TEXTURE_COUNT 15
 
 // Flags of a TextureLookup.
 #define TEXTURE_WRAP_S 0x3u      // WRAP_*
@@ -246,7 +250,7 @@ struct TriangleShading {
     uint material;     // index | SHADING_FLAT
 };
 
-// 192 bytes, read as 12 uvec4 texels, and of those only what the scene's features need. Factors as in glTF; a texture
+// 208 bytes, read as 13 uvec4 texels, and of those only what the scene's features need. Factors as in glTF; a texture
 // multiplies them.
 #define FIELDS_SurfaceMaterial(FIELD, ARRAY, OPTIONAL) \
     FIELD(vec3, color)      /* base colour */ \
@@ -273,7 +277,8 @@ struct TriangleShading {
     OPTIONAL(FEATURE_ANISOTROPY, vec3(1.0f, 0.0f, 0.0f), vec3, anisotropy) \
     OPTIONAL(FEATURE_IRIDESCENCE, 1.0f, float, film_index) \
     OPTIONAL(FEATURE_IRIDESCENCE, vec2(0.0f), vec2, film_thickness)  /* least and most, micrometres */ \
-    ARRAY(ANY_FEATURE, uint, unused, 2)
+    OPTIONAL(FEATURE_SHEEN, vec3(0.0f), vec3, sheen_color) \
+    OPTIONAL(FEATURE_SHEEN, 0.0f, float, sheen_roughness)  /* width = roughness^2 */
 RECORD(SurfaceMaterial)
 
 // 48 bytes, read as 3 uvec4 texels. uv' = (matrix.xy . uv, matrix.zw . uv) + offset.
@@ -592,7 +597,7 @@ struct Params {
     float local_power;     // of the group of local lights
     float environment_power;
     uvec2 environment;     // its columns and rows
-    float lens_radius;     // frame units; at focus_distance along the axis a point is sharp
+    float lens_radius;     // frame units, 0: a pinhole; at focus_distance along the axis a point is sharp
     float focus_distance;
     float start;           // depth at which eye rays begin, frame units: 0 but for an eye far from the scene
     uint orthographic;     // 1: eye rays are parallel, 0: they meet in the eye
@@ -655,7 +660,7 @@ struct Launch {
 static_assert(sizeof(BvhNode) == 64 && sizeof(InstanceNode) == 64 && sizeof(Instance) == 64);
 static_assert(sizeof(TriangleGeometry) == 48);
 static_assert(sizeof(TriangleShading) == 16);
-static_assert(sizeof(SurfaceMaterial) == 192 && sizeof(TextureLookup) == 48 && sizeof(Light) == 96);
+static_assert(sizeof(SurfaceMaterial) == 208 && sizeof(TextureLookup) == 48 && sizeof(Light) == 96);
 static_assert(sizeof(AskedLight) == 16);
 static_assert(sizeof(Photon) == 16 && sizeof(PhotonFlux) == 16);
 static_assert(sizeof(HitPosition) == 16 && sizeof(HitWeight) == 16 && sizeof(HitEmission) == 16 &&

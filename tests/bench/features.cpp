@@ -106,6 +106,10 @@ std::vector<Case> cases() {
              for (Material& m : s.materials)
                  if (m.metallic > 0.0f) m.roughness = 0.4f, m.anisotropy = 0.7f;
          }},
+        {"sheen", FEATURE_SHEEN | FEATURE_GLOSS, diffuse([](Material& m) {
+             m.sheen_color = glm::vec3(0.5f);
+             m.sheen_roughness = 0.4f;
+         })},
         {"base colour textures", FEATURE_TEXTURES,
          [](Scene& s, Settings&) {
              const Texture t = checker(s);
@@ -125,11 +129,6 @@ std::vector<Case> cases() {
         {"unlit surfaces", FEATURE_UNLIT,
          [](Scene& s, Settings&) {
              for (Material& m : s.materials) m.unlit = m.metallic > 0.0f;
-         }},
-        {"depth of field", FEATURE_LENS,
-         [](Scene&, Settings& settings) {
-             settings.aperture = 0.05;
-             settings.focus_distance = 1.5;
          }},
         {"textured lights", FEATURE_TEXTURES | FEATURE_TEXTURED_LIGHTS,
          [](Scene& s, Settings&) {

@@ -95,8 +95,9 @@ std::string name_of(const testing::TestParamInfo<Case>& info) { return info.para
 /// The others' lobes are the same functions of the same surface.
 std::vector<Case> rooms_of_instances() {
     std::vector<Case> rooms;
-    for (const char* name : {"metal_02", "clearcoat_04", "glass", "glass_rough", "absorption", "thin", "blend", "mask",
-                             "textures", "normal_map", "anisotropy", "anisotropy_glass", "lens", "environment"}) {
+    for (const char* name :
+         {"metal_02", "clearcoat_04", "glass", "glass_rough", "absorption", "thin", "blend", "mask", "textures",
+          "normal_map", "anisotropy", "anisotropy_glass", "sheen", "lens", "environment"}) {
         const auto room = std::ranges::find(material_cases(), std::string(name), &Case::name);
         if (room == material_cases().end()) throw std::logic_error(fmt::format("there is no room '{}'", name));
         rooms.push_back(*room);

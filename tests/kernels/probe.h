@@ -135,7 +135,8 @@ struct TextureOutput {
     vec3 clearcoat_normal;
     vec3 tangent;
     float anisotropy;
-    vec2 film;  // its share and thickness
+    vec2 film;   // its share and thickness
+    vec4 sheen;  // its colour and roughness
 };
 
 struct WavelengthInput {

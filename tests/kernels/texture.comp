@@ -34,6 +34,7 @@ void main() {
         result.clearcoat_normal = surface.clearcoat_normal;
         result.tangent = surface.tangent;
         result.anisotropy = material.anisotropy.z;
+        result.sheen = vec4(material.sheen_color, material.sheen_roughness);
         result.film = vec2(material.iridescence, material.film_thickness.y);
     }
     outputs[i] = result;

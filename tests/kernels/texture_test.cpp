@@ -216,6 +216,10 @@ Scene textured_sheet(std::mt19937& random, bool tangents) {
         m.iridescence = 0.8f;
         m.iridescence_texture = texture(2, 4);
         m.iridescence_thickness_texture = texture(5, 2);
+        m.sheen_color = {0.9f, 0.5f, 0.7f};
+        m.sheen_roughness = 0.9f;
+        m.sheen_color_texture = texture(3, 2);
+        m.sheen_roughness_texture = texture(2, 5);
         // Blue of a normal map is positive.
         for (const auto& t : {m.normal_texture, m.clearcoat_normal_texture}) {
             auto& rgba = scene.images[t->image].rgba;
@@ -282,7 +286,8 @@ TEST_F(Textures, SurfacesAreTheReferences) {
                   &material.emissive_texture, &material.transmission_texture, &material.specular_texture,
                   &material.specular_color_texture, &material.clearcoat_texture, &material.clearcoat_roughness_texture,
                   &material.clearcoat_normal_texture, &material.anisotropy_texture, &material.iridescence_texture,
-                  &material.iridescence_thickness_texture}) {
+                  &material.iridescence_thickness_texture, &material.sheen_color_texture,
+                  &material.sheen_roughness_texture}) {
                 const Extent size = scene.images[(*texture)->image].size;
                 const glm::dvec2 place =
                     oracle::uv_at(scene, hit, (*texture)->uv_set) * glm::dvec2(size.width, size.height);
@@ -299,6 +304,7 @@ TEST_F(Textures, SurfacesAreTheReferences) {
             };
             for (int k = 0; k < 3; ++k) {
                 expect("base colour", out.value[k], want.base_color[k], 5e-4);
+                expect("sheen colour", out.sheen[k], want.bsdf.sheen_color[k], 1e-5);
                 expect("specular colour", out.specular_color[k], want.bsdf.specular_color[k], 1e-5);
                 if (want.front || material.double_sided) expect("emission", out.emission[k], want.emission[k], 3e-5);
             }
@@ -309,6 +315,7 @@ TEST_F(Textures, SurfacesAreTheReferences) {
             expect("clearcoat", out.clearcoat[0], want.bsdf.coat, 1e-5);
             expect("film", out.film[0], want.bsdf.film, 1e-5);
             expect("thickness of the film", 1e3 * out.film[1], want.bsdf.film_thickness, 1e-2);
+            expect("sheen alpha", out.sheen[3] * out.sheen[3], want.bsdf.sheen_alpha, 1e-5);
             expect("anisotropy", out.anisotropy, want.bsdf.anisotropy, 1e-5);
             expect("clearcoat alpha", out.clearcoat[1] * out.clearcoat[1], want.bsdf.coat_alpha, 1e-5);
             const double coverage = oracle::coverage(scene, hit);

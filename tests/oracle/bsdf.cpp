@@ -9,6 +9,7 @@
 
 #include "oracle/channels.h"
 #include "oracle/fresnel.h"
+#include "oracle/sheen.h"
 
 namespace vkcppm::oracle {
 namespace {
@@ -104,7 +105,8 @@ double uniform(std::mt19937_64& random) { return static_cast<double>(random() >>
 
 bool Bsdf::is_delta(Lobe lobe) const {
     switch (lobe) {
-        case Lobe::diffuse: return false;
+        case Lobe::diffuse:
+        case Lobe::sheen: return false;
         case Lobe::reflection: return alpha == 0.0 && anisotropy == 0.0;
         case Lobe::transmission: return (alpha == 0.0 && anisotropy == 0.0) || (!thin && refraction_ior == 1.0);
         case Lobe::coat: return coat_alpha == 0.0;
@@ -120,6 +122,7 @@ bool Bsdf::has(Lobe lobe) const {
         case Lobe::reflection: return metallic > 0.0 || transmits() || (opaque > 0.0 && specular > 0.0);
         case Lobe::transmission: return transmits() && ior != 0.0;
         case Lobe::coat: return coat > 0.0;
+        case Lobe::sheen: return largest(sheen_color) > 0.0;
     }
     return false;
 }
@@ -184,6 +187,14 @@ double Bsdf::below_coat(double cosine) const {
     return coat > 0.0 ? 1.0 - coat * fresnel_schlick(glm::dvec3(coat_reflectance), 1.0, cosine).x : 1.0;
 }
 
+/// KHR_materials_sheen: min(1 - max3(color) E(n.wo), 1 - max3(color) E(n.wi)).
+double Bsdf::below_sheen(const glm::dvec3& wo, const glm::dvec3& wi) const {
+    if (!has(Lobe::sheen)) return 1.0;
+    const double most = std::max(sheen_albedo(absolute_cosine(wo, normal), sheen_alpha),
+                                 sheen_albedo(absolute_cosine(wi, normal), sheen_alpha));
+    return 1.0 - largest(sheen_color) * std::min(1.0, most);
+}
+
 /// Through a facet of normal h, on the side of wo; none where the reflection is total.
 std::optional<glm::dvec3> Bsdf::refract(const glm::dvec3& wo, const glm::dvec3& h) const {
     if (refraction_ior == 1.0) return -wo;
@@ -231,9 +242,14 @@ glm::dvec3 Bsdf::evaluate(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi)
         const glm::dvec3 sum = wo + wi;
         const double length = glm::length(sum);
         const double oh = length > 0.0 ? std::min(std::abs(glm::dot(wo, sum)) / length, 1.0) : 0.0;
-        return share * base_color / pi * (1.0 - largest(fresnel_coat(oh))) * below_coat(oh);
+        return share * base_color / pi * (1.0 - largest(fresnel_coat(oh))) * below_coat(oh) * below_sheen(wo, wi);
     }
     if (co <= 0.0) return black;
+    if (lobe == Lobe::sheen) {
+        const glm::dvec3 h = half_vector(lobe, wo, wi);
+        return sheen_color *
+               (sheen_value(co, ci, glm::dot(h, normal), sheen_alpha) * below_coat(absolute_cosine(wo, h)));
+    }
     const Facets facets = facets_of(lobe);
     if (lobe == Lobe::coat) {
         const glm::dvec3 h = half_vector(lobe, wo, wi);
@@ -242,7 +258,7 @@ glm::dvec3 Bsdf::evaluate(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi)
     if (lobe == Lobe::reflection) {
         const glm::dvec3 h = half_vector(lobe, wo, wi);
         const double oh = absolute_cosine(wo, h);
-        return reflectance(oh) * (below_coat(oh) * facets.ggx(h) * facets.visibility(wo, wi));
+        return reflectance(oh) * (below_coat(oh) * below_sheen(wo, wi) * facets.ggx(h) * facets.visibility(wo, wi));
     }
     const glm::dvec3 h = half_vector(lobe, wo, wi);
     const double oh = glm::dot(wo, h);
@@ -250,8 +266,8 @@ glm::dvec3 Bsdf::evaluate(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi)
     // Walter et al. 2007, equation 21, with the squared index of the side of wi: of radiance over squared index. Thin
     // and mirrored, the Jacobian turns it into F D V of reflection.
     return (1.0 - metallic) * transmission * base_color *
-           (below_coat(absolute_cosine(wo, normal)) * through_glass(std::min(oh, 1.0)) * facets.ggx(h) *
-            facets.visibility(wo, wi) * 4.0 * oh * half_vector_jacobian(lobe, wo, wi, h));
+           (below_coat(absolute_cosine(wo, normal)) * below_sheen(wo, wi) * through_glass(std::min(oh, 1.0)) *
+            facets.ggx(h) * facets.visibility(wo, wi) * 4.0 * oh * half_vector_jacobian(lobe, wo, wi, h));
 }
 
 glm::dvec3 Bsdf::evaluate(const glm::dvec3& wo, const glm::dvec3& wi) const {
@@ -280,12 +296,14 @@ Bsdf::Deltas Bsdf::delta_lobes(const glm::dvec3& wo) const {
         add(Lobe::coat, reflected(wo, coat_normal), glm::dvec3(1.0 - below_coat(cosine(wo, coat_normal))));
     }
     if (is_delta(Lobe::reflection) && has(Lobe::reflection)) {
-        add(Lobe::reflection, reflected(wo, normal), reflectance(co) * below_coat(co));
+        const glm::dvec3 direction = reflected(wo, normal);
+        add(Lobe::reflection, direction, reflectance(co) * (below_coat(co) * below_sheen(wo, direction)));
     }
     if (is_delta(Lobe::transmission) && has(Lobe::transmission)) {
         if (const auto direction = thin ? std::optional(-wo) : refract(wo, normal)) {
             add(Lobe::transmission, *direction,
-                (1.0 - metallic) * transmission * base_color * (through_glass(co) * below_coat(co)));
+                (1.0 - metallic) * transmission * base_color *
+                    (through_glass(co) * below_coat(co) * below_sheen(wo, *direction)));
         }
     }
     return deltas;
@@ -309,7 +327,11 @@ Bsdf::Choice Bsdf::choice(const glm::dvec3& wo) const {
             least_albedo + below * (1.0 - metallic) * transmission * mean(base_color) * (1.0 - fresnel_exact(co));
     }
     if (rough(Lobe::coat)) at(Lobe::coat) = least_albedo + 1.0 - below_coat(cosine(wo, coat_normal));
-    const double total = albedo[0] + albedo[1] + albedo[2] + albedo[3];
+    if (rough(Lobe::sheen)) {
+        at(Lobe::sheen) = least_albedo + below * mean(sheen_color) * std::min(1.0, sheen_albedo(co, sheen_alpha));
+    }
+    double total = 0.0;
+    for (const double probability : albedo) total += probability;
     for (double& probability : albedo) {
         probability = total > 0.0 ? probability / total : 0.0;
     }
@@ -320,9 +342,7 @@ double Bsdf::lobe_pdf(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi) con
     const bool through = lobe == Lobe::transmission;
     const double ci = glm::dot(wi, normal_of(lobe)) * (through ? -1.0 : 1.0);
     if (ci <= 0.0 || (glm::dot(wi, geometric_normal) < 0.0) != through) return 0.0;
-    if (lobe == Lobe::diffuse) {
-        return ci / pi;
-    }
+    if (lobe == Lobe::diffuse || lobe == Lobe::sheen) return ci / pi;
     const glm::dvec3 h = half_vector(lobe, wo, wi);
     if (glm::dot(wo, h) <= 0.0 || (through && !thin && glm::dot(wi, h) >= 0.0)) return 0.0;
     return facets_of(lobe).visible_normal_pdf(wo, h) * half_vector_jacobian(lobe, wo, wi, h);
@@ -361,7 +381,7 @@ std::optional<Bsdf::Sample> Bsdf::sample(const glm::dvec3& wo, std::mt19937_64& 
         return std::nullopt;
     }
     std::optional<glm::dvec3> wi;
-    if (lobe == Lobe::diffuse) {
+    if (lobe == Lobe::diffuse || lobe == Lobe::sheen) {
         wi = sample_cosine(normal, random);
     } else {
         wi = scatter(lobe, wo, facets_of(lobe).sample_visible_normal(wo, random));
@@ -393,6 +413,13 @@ glm::dvec3 Bsdf::lobe_albedo(Lobe lobe, const glm::dvec3& wo, int steps) const {
                 continue;
             }
             const double r = std::sqrt(1.0 - t * t);
+            if (lobe == Lobe::sheen) {
+                // A density of 1 / (4 pi sqrt(cos)) of the directions, cos = t^2: what it reflects to grazing ones.
+                const double sine = std::sqrt(1.0 - t * t * t * t);
+                sum += 4.0 * pi * t * t * t *
+                       evaluate(lobe, wo, facets.world({sine * std::cos(angle), sine * std::sin(angle), t * t}));
+                continue;
+            }
             const glm::dvec3 local = glm::normalize(
                 glm::dvec3(facets.alpha_x * r * std::cos(angle), facets.alpha_y * r * std::sin(angle), t));
             const glm::dvec3 h = facets.world(local);

@@ -1,8 +1,9 @@
 #pragma once
 // How a surface scatters: the glTF 2.0 material (appendix B) with transmission, volume, ior, specular, clearcoat,
-// anisotropy and iridescence, in double precision.
+// anisotropy, iridescence and sheen, in double precision.
 
 #include <array>
+#include <iterator>
 #include <optional>
 #include <random>
 
@@ -14,8 +15,8 @@ namespace vkcppm::oracle {
 /// Uniform in [0, 1).
 double uniform(std::mt19937_64& random);
 
-enum class Lobe { diffuse, reflection, transmission, coat };
-inline constexpr Lobe all_lobes[] = {Lobe::diffuse, Lobe::reflection, Lobe::transmission, Lobe::coat};
+enum class Lobe { diffuse, reflection, transmission, coat, sheen };
+inline constexpr Lobe all_lobes[] = {Lobe::diffuse, Lobe::reflection, Lobe::transmission, Lobe::coat, Lobe::sheen};
 
 /// Parameters after textures. Directions wo (towards the eye) and wi (towards the light) are unit and point away from
 /// the surface; the normals are on the side of wo, which is the inside of a solid where `front` is false. Reflection
@@ -25,6 +26,7 @@ inline constexpr Lobe all_lobes[] = {Lobe::diffuse, Lobe::reflection, Lobe::tran
 /// stretches it: KHR_materials_anisotropy has alpha_t = mix(alpha, 1, strength^2) along the tangent and alpha_b = alpha
 /// across it, which is at least 0.001 there.
 /// A direction wo below a shading normal sees no rough lobe of that normal.
+/// All but the coat lies below the sheen, which takes from it what KHR_materials_sheen's albedo scaling says.
 struct Bsdf {
     glm::dvec3 geometric_normal{0.0, 0.0, 1.0};  // unit
     glm::dvec3 normal{0.0, 0.0, 1.0};            // unit, shading
@@ -44,11 +46,14 @@ struct Bsdf {
     glm::dvec3 specular_color{1.0};
     double coat = 0.0;
     double coat_alpha = 0.0;  // clearcoatRoughness^2
-    bool thin = true;         // no volume behind: transmitted light passes straight on
-    bool front = true;        // wo is on the outside
+    glm::dvec3 sheen_color{0.0};
+    double sheen_alpha = 1.0;  // sheenRoughness^2: oracle/sheen.h
+    bool thin = true;          // no volume behind: transmitted light passes straight on
+    bool front = true;         // wo is on the outside
 
-    /// The bidirectional scattering function of one lobe, 1/sr, without the cosine and without delta lobes. That of
-    /// transmission into a solid is for radiance over squared index: f(wo, wi) eta_o^2 = f(wi, wo) eta_i^2.
+    /// The bidirectional scattering function of one lobe, less what lies on top takes, 1/sr, without the cosine and
+    /// without delta lobes. That of transmission into a solid is for radiance over squared index:
+    /// f(wo, wi) eta_o^2 = f(wi, wo) eta_i^2.
     glm::dvec3 evaluate(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi) const;
 
     /// The sum over all lobes.
@@ -117,13 +122,14 @@ private:
     glm::dvec3 fresnel_coat(double cosine) const;
     glm::dvec3 reflectance(double cosine) const;
     double below_coat(double cosine) const;
+    double below_sheen(const glm::dvec3& wo, const glm::dvec3& wi) const;
     std::optional<glm::dvec3> refract(const glm::dvec3& wo, const glm::dvec3& h) const;
     glm::dvec3 half_vector(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi) const;
     double lobe_pdf(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi) const;
     glm::dvec3 lobe_albedo(Lobe lobe, const glm::dvec3& wo, int steps) const;
     std::optional<glm::dvec3> scatter(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& h) const;
     double half_vector_jacobian(Lobe lobe, const glm::dvec3& wo, const glm::dvec3& wi, const glm::dvec3& h) const;
-    using Choice = std::array<double, 4>;  // probability [lobe]; all zero: nothing scatters
+    using Choice = std::array<double, std::size(all_lobes)>;  // probability [lobe]; all zero: nothing scatters
     Choice choice(const glm::dvec3& wo) const;
     double pdf(const Choice& choice, const glm::dvec3& wo, const glm::dvec3& wi) const;
 };

@@ -15,7 +15,7 @@ namespace vkcppm::oracle {
 namespace {
 
 Scattering classify(const Bsdf& bsdf) {
-    if (bsdf.coat == 0.0 && bsdf.film == 0.0) {
+    if (bsdf.coat == 0.0 && bsdf.film == 0.0 && bsdf.sheen_color == glm::dvec3(0.0)) {
         if (bsdf.transmission == 1.0 && !bsdf.thin && bsdf.metallic == 0.0 && bsdf.alpha == 0.0 &&
             bsdf.anisotropy == 0.0 && bsdf.base_color == glm::dvec3(1.0)) {
             return Scattering::glass;
@@ -153,6 +153,11 @@ Surface surface_at(const Scene& scene, const Hit& hit, const glm::dvec3& directi
     bsdf.film_thickness =
         glm::mix(double(material.iridescence_thickness_minimum), double(material.iridescence_thickness_maximum),
                  lookup(scene, hit, material.iridescence_thickness_texture, Encoding::linear).g);
+    bsdf.sheen_color =
+        glm::dvec3(material.sheen_color) * glm::dvec3(lookup(scene, hit, material.sheen_color_texture, Encoding::srgb));
+    const double sheen_roughness =
+        material.sheen_roughness * lookup(scene, hit, material.sheen_roughness_texture, Encoding::linear).a;
+    bsdf.sheen_alpha = sheen_roughness * sheen_roughness;
     bsdf.thin = material.thickness == 0.0f;
     bsdf.front = surface.front;
     set_anisotropy(scene, hit, side * surface.shading_normal, material, bsdf);

@@ -59,6 +59,7 @@ TEST(GltfMaterial, ReadsEveryFactorOfAMaterial) {
                     {"iridescenceIor", 1.75},
                     {"iridescenceThicknessMinimum", 50},
                     {"iridescenceThicknessMaximum", 900}}},
+                  {"KHR_materials_sheen", {{"sheenColorFactor", {0.75, 0.5, 0.25}}, {"sheenRoughnessFactor", 0.875}}},
                   {"KHR_materials_specular", {{"specularFactor", 0}, {"specularColorFactor", {1, 2, 3}}}}}},
             })
             .materials.at(0);
@@ -87,6 +88,8 @@ TEST(GltfMaterial, ReadsEveryFactorOfAMaterial) {
     EXPECT_EQ(m.iridescence_ior, 1.75f);
     EXPECT_EQ(m.iridescence_thickness_minimum, 50.0f);
     EXPECT_EQ(m.iridescence_thickness_maximum, 900.0f);
+    EXPECT_EQ(m.sheen_color, glm::vec3(0.75f, 0.5f, 0.25f));
+    EXPECT_EQ(m.sheen_roughness, 0.875f);
     EXPECT_FALSE(m.unlit);
 }
 
@@ -118,6 +121,8 @@ TEST(GltfMaterial, GivesGltfsDefaultsToAnEmptyMaterialAndToNone) {
         EXPECT_EQ(m.iridescence_ior, 1.3f);
         EXPECT_EQ(m.iridescence_thickness_minimum, 100.0f);
         EXPECT_EQ(m.iridescence_thickness_maximum, 400.0f);
+        EXPECT_EQ(m.sheen_color, glm::vec3(0));
+        EXPECT_EQ(m.sheen_roughness, 0.0f);
         EXPECT_EQ(m.normal_scale, 1.0f);
     }
 }
@@ -191,35 +196,39 @@ Texture base_color_texture(const Scene& scene) {
 
 TEST(GltfTexture, EveryUseReadsItsOwn) {
     GltfBuilder builder = textured_triangle();
-    std::array<json, 13> info;
+    std::array<json, 15> info;
     for (int i = 0; i < int(info.size()); ++i) {
         info[i] = {{"index", builder.texture(test::one_texel_png({std::uint8_t(i), 0, 0, 255}))}};
     }
     info[2]["scale"] = 0.5;
     info[9]["scale"] = -2;
-    set_material(builder,
-                 {{"pbrMetallicRoughness", {{"baseColorTexture", info[0]}, {"metallicRoughnessTexture", info[1]}}},
-                  {"normalTexture", info[2]},
-                  {"emissiveTexture", info[3]},
-                  {"emissiveFactor", {1, 1, 1}},
-                  {"occlusionTexture", info[0]},
-                  {"extensions",
-                   {{"KHR_materials_transmission", {{"transmissionFactor", 1}, {"transmissionTexture", info[4]}}},
-                    {"KHR_materials_specular", {{"specularTexture", info[5]}, {"specularColorTexture", info[6]}}},
-                    {"KHR_materials_clearcoat",
-                     {{"clearcoatFactor", 1},
-                      {"clearcoatTexture", info[7]},
-                      {"clearcoatRoughnessFactor", 1},
-                      {"clearcoatRoughnessTexture", info[8]},
-                      {"clearcoatNormalTexture", info[9]}}},
-                    {"KHR_materials_anisotropy", {{"anisotropyStrength", 1}, {"anisotropyTexture", info[10]}}},
-                    {"KHR_materials_iridescence",
-                     {{"iridescenceFactor", 1},
-                      {"iridescenceTexture", info[11]},
-                      {"iridescenceThicknessTexture", info[12]}}}}}});
+    set_material(
+        builder,
+        {{"pbrMetallicRoughness", {{"baseColorTexture", info[0]}, {"metallicRoughnessTexture", info[1]}}},
+         {"normalTexture", info[2]},
+         {"emissiveTexture", info[3]},
+         {"emissiveFactor", {1, 1, 1}},
+         {"occlusionTexture", info[0]},
+         {"extensions",
+          {{"KHR_materials_transmission", {{"transmissionFactor", 1}, {"transmissionTexture", info[4]}}},
+           {"KHR_materials_specular", {{"specularTexture", info[5]}, {"specularColorTexture", info[6]}}},
+           {"KHR_materials_clearcoat",
+            {{"clearcoatFactor", 1},
+             {"clearcoatTexture", info[7]},
+             {"clearcoatRoughnessFactor", 1},
+             {"clearcoatRoughnessTexture", info[8]},
+             {"clearcoatNormalTexture", info[9]}}},
+           {"KHR_materials_anisotropy", {{"anisotropyStrength", 1}, {"anisotropyTexture", info[10]}}},
+           {"KHR_materials_iridescence",
+            {{"iridescenceFactor", 1}, {"iridescenceTexture", info[11]}, {"iridescenceThicknessTexture", info[12]}}},
+           {"KHR_materials_sheen",
+            {{"sheenColorFactor", {1, 1, 1}},
+             {"sheenRoughnessFactor", 1},
+             {"sheenColorTexture", info[13]},
+             {"sheenRoughnessTexture", info[14]}}}}}});
     const Scene scene = load(builder);
     const Material& m = scene.materials.at(0);
-    const std::array<const std::optional<Texture>*, 13> textures = {&m.base_color_texture,
+    const std::array<const std::optional<Texture>*, 15> textures = {&m.base_color_texture,
                                                                     &m.metallic_roughness_texture,
                                                                     &m.normal_texture,
                                                                     &m.emissive_texture,
@@ -231,14 +240,16 @@ TEST(GltfTexture, EveryUseReadsItsOwn) {
                                                                     &m.clearcoat_normal_texture,
                                                                     &m.anisotropy_texture,
                                                                     &m.iridescence_texture,
-                                                                    &m.iridescence_thickness_texture};
+                                                                    &m.iridescence_thickness_texture,
+                                                                    &m.sheen_color_texture,
+                                                                    &m.sheen_roughness_texture};
     for (std::size_t i = 0; i < textures.size(); ++i) {
         ASSERT_TRUE(*textures[i]) << "texture " << i;
         EXPECT_EQ(int(scene.images.at((*textures[i])->image).rgba.at(0)), int(i)) << "texture " << i;
     }
     EXPECT_EQ(m.normal_scale, 0.5f);
     EXPECT_EQ(m.clearcoat_normal_scale, -2.0f);
-    EXPECT_EQ(scene.images.size(), 13u);
+    EXPECT_EQ(scene.images.size(), 15u);
 }
 
 TEST(GltfTexture, WhatMultipliesZeroIsNotRead) {
@@ -257,7 +268,8 @@ TEST(GltfTexture, WhatMultipliesZeroIsNotRead) {
            {"KHR_materials_clearcoat",
             {{"clearcoatTexture", info}, {"clearcoatRoughnessTexture", info}, {"clearcoatNormalTexture", info}}},
            {"KHR_materials_anisotropy", {{"anisotropyTexture", info}}},
-           {"KHR_materials_iridescence", {{"iridescenceTexture", info}, {"iridescenceThicknessTexture", info}}}}}});
+           {"KHR_materials_iridescence", {{"iridescenceTexture", info}, {"iridescenceThicknessTexture", info}}},
+           {"KHR_materials_sheen", {{"sheenColorTexture", info}, {"sheenRoughnessTexture", info}}}}}});
     const Scene scene = load(builder);
     EXPECT_TRUE(scene.images.empty());
     EXPECT_TRUE(scene.uv[0].empty());

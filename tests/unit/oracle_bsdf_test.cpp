@@ -16,6 +16,7 @@
 #include "oracle/bsdf.h"
 #include "oracle/dispersion.h"
 #include "oracle/fresnel.h"
+#include "oracle/sheen.h"
 
 namespace vkcppm::oracle {
 namespace {
@@ -57,16 +58,16 @@ std::vector<Case> cases() {
     everything.coat_alpha = 0.25;
     everything.coat_normal = glm::normalize(glm::dvec3(0.1, -0.2, 1.0));
     everything.normal = glm::normalize(glm::dvec3(-0.15, 0.1, 1.0));
+    Bsdf velvet = plastic;
+    velvet.sheen_color = {0.7, 0.3, 0.5};
+    velvet.sheen_alpha = 0.16;
+    everything.sheen_color = {0.2, 0.4, 0.3};
+    everything.sheen_alpha = 0.5;
     Bsdf everything_inside = everything;
     everything_inside.front = false;
-    return {{"lambert", lambert},
-            {"metal", metal},
-            {"plastic", plastic},
-            {"frosted", frosted},
-            {"frosted inside", frosted_inside},
-            {"pane", pane},
-            {"everything", everything},
-            {"everything inside", everything_inside}};
+    return {{"lambert", lambert}, {"metal", metal},           {"plastic", plastic},
+            {"velvet", velvet},   {"frosted", frosted},       {"frosted inside", frosted_inside},
+            {"pane", pane},       {"everything", everything}, {"everything inside", everything_inside}};
 }
 
 glm::dvec3 on_sphere(std::mt19937_64& random) {
@@ -424,6 +425,53 @@ TEST(OracleFilm, FewOrdersAreNearlyAll) {
     EXPECT_LT(error(0.6, 0.3), 5e-3);
     EXPECT_LT(error(0.95, 0.3), 5e-3);
     EXPECT_LT(error(0.95, 0.0), 0.2) << "of metals at grazing angles";
+}
+
+/// The largest of a function over cosines at which a surface is seen, crowded at grazing ones.
+template <typename Function> double most_over_cosines(const Function& function) {
+    double most = 0.0;
+    for (double root = 0.025; root <= 1.0; root += 0.05) most = std::max(most, function(root * root));
+    return most;
+}
+
+TEST(OracleSheen, ReflectsItsAlbedoAndNoMoreThanArrives) {
+    Bsdf velvet;
+    velvet.base_color = glm::dvec3(0.0);
+    velvet.specular = 0.0;
+    velvet.sheen_color = glm::dvec3(1.0);
+    for (const double roughness : {0.1, 0.3, 0.6, 1.0}) {
+        velvet.sheen_alpha = roughness * roughness;
+        const double off = most_over_cosines([&](double c) {
+            const double sum = velvet.directional_albedo({std::sqrt(1.0 - c * c), 0.0, c}, 200).x;
+            EXPECT_LE(sum, 1.0) << "roughness " << roughness << ", cosine " << c;
+            // Where a direction of light is brought down, too, there is less.
+            return roughness < 0.25 ? 0.0 : std::abs(sum - sheen_albedo(c, velvet.sheen_alpha));
+        });
+        EXPECT_LT(off, 2e-4) << "roughness " << roughness;
+    }
+}
+
+TEST(OracleSheen, FurnaceLosesWhatTheScalingTakesTwice) {
+    // White over white: E(o) of the sheen, and 2 c (1 - max(E(o), E(c))) of the base over the cosines c.
+    Bsdf white;
+    white.specular = 0.0;
+    white.sheen_color = glm::dvec3(1.0);
+    for (const double roughness : {0.3, 0.6, 1.0}) {
+        white.sheen_alpha = roughness * roughness;
+        const double off = most_over_cosines([&](double c) {
+            const double seen = sheen_albedo(c, white.sheen_alpha);
+            double base = 0.0;
+            constexpr int steps = 2000;
+            for (int i = 0; i < steps; ++i) {
+                const double at = (i + 0.5) / steps;
+                base += 2.0 * at * (1.0 - std::max(seen, sheen_albedo(at, white.sheen_alpha))) / steps;
+            }
+            const double sum = white.directional_albedo({std::sqrt(1.0 - c * c), 0.0, c}, 200).x;
+            EXPECT_LT(sum, 1.0 + 2e-4) << "roughness " << roughness << ", cosine " << c;
+            return std::abs(sum - (seen + base));
+        });
+        EXPECT_LT(off, 2e-4) << "roughness " << roughness;
+    }
 }
 
 TEST(OracleBsdf, TiltedCoatReflectsAboutItsOwnNormal) {

@@ -22,7 +22,7 @@ vec3 wall_transmittance(Bsdf b, float wo_n, float wo_h) {
 // What goes straight on through a pane.
 vec3 pane_transmittance(Bsdf b, Surface surface, vec3 wo) {
     float cosine = min(1.0, dot(surface.normal, wo));
-    return wall_transmittance(b, cosine, cosine);
+    return wall_transmittance(b, cosine, cosine) * below_sheen(b, cosine, cosine);
 }
 
 // The facets of rough glass turn from n to wo: some transmit where n would reflect all.

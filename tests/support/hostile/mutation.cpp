@@ -116,6 +116,8 @@ const std::vector<std::pair<const char*, json>>& rare_members() {
           {"KHR_materials_anisotropy", {{"anisotropyStrength", 1}, {"anisotropyRotation", 1e300}}},
           {"KHR_materials_iridescence", {{"iridescenceFactor", 1}, {"iridescenceIor", 1e38}}},
           {"KHR_materials_iridescence", {{"iridescenceFactor", 1}, {"iridescenceThicknessMaximum", 1e300}}},
+          {"KHR_materials_sheen",
+           {{"sheenColorFactor", {1e300, -1, 1}}, {"sheenRoughnessFactor", 9}, {"sheenColorTexture", {{"index", 0}}}}},
           {"KHR_materials_unlit", json::object()}}},
         {"extensions", {{"KHR_texture_transform", {{"offset", {1e9, -1e9}}, {"rotation", 1e9}, {"scale", {0, 1e30}}}}}},
         {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}},

@@ -73,13 +73,14 @@ std::string unsound_material(const Scene& scene, const Material& m) {
          {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.emissive_texture,
           &m.transmission_texture, &m.specular_texture, &m.specular_color_texture, &m.clearcoat_texture,
           &m.clearcoat_roughness_texture, &m.clearcoat_normal_texture, &m.anisotropy_texture, &m.iridescence_texture,
-          &m.iridescence_thickness_texture}) {
+          &m.iridescence_thickness_texture, &m.sheen_color_texture, &m.sheen_roughness_texture}) {
         if (!*texture) continue;
         if ((*texture)->image >= scene.images.size() || (*texture)->uv_set > 1) return "a texture";
     }
     if (!is_fraction({m.base_color, m.opacity})) return "the base colour";
     if (!is_fraction({m.metallic, m.roughness, m.transmission, m.clearcoat})) return "a factor";
     if (!is_fraction({m.anisotropy, m.iridescence, 0.0f, 0.0f})) return "a factor";
+    if (!is_fraction({m.sheen_color, m.sheen_roughness})) return "the sheen";
     if (!std::isfinite(m.anisotropy_rotation)) return "the rotation of the anisotropy";
     if (!(m.iridescence_ior >= 1.0f && m.iridescence_ior <= 100.0f)) return "the index of the film";
     for (const float thickness : {m.iridescence_thickness_minimum, m.iridescence_thickness_maximum}) {

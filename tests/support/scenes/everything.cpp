@@ -75,7 +75,12 @@ void add_materials(GltfBuilder& b) {
              {"KHR_materials_anisotropy",
               {{"anisotropyStrength", 0.6}, {"anisotropyRotation", 1}, {"anisotropyTexture", plain}}},
              {"KHR_materials_iridescence",
-              {{"iridescenceFactor", 0.7}, {"iridescenceTexture", plain}, {"iridescenceThicknessTexture", plain}}}}}});
+              {{"iridescenceFactor", 0.7}, {"iridescenceTexture", plain}, {"iridescenceThicknessTexture", plain}}},
+             {"KHR_materials_sheen",
+              {{"sheenColorFactor", {0.3, 0.5, 0.4}},
+               {"sheenRoughnessFactor", 0.5},
+               {"sheenColorTexture", plain},
+               {"sheenRoughnessTexture", moved}}}}}});
     b.add("materials",
           {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}},
            {"alphaMode", "BLEND"},

@@ -230,6 +230,22 @@ const std::vector<Case>& material_cases() {
              make_glass(s.materials[pane], 0.3f, 0.0f);
              for (const auto i : {ball, pane}) s.materials[i].anisotropy = 0.7f;
          }},
+        {"sheen",
+         [](Scene& s, Settings&) {
+             // Of few widths: the oracle integrates for each.
+             Texture widths = add_image(s, 2, 1, [](auto x, auto) { return glm::vec4(0, 0, 0, x == 0 ? 0.4f : 1.0f); });
+             widths.nearest = true;
+             s.materials[ball].sheen_roughness_texture = widths;
+             s.materials[floor_].sheen_color_texture =
+                 add_image(s, 1, 4, [](auto, auto y) { return glm::vec4(1.0f, 0.3f * float(y), 0.5f, 1.0f); });
+             make_glossy(s, 0.4f);
+             make_glass(s.materials[pane], 0.0f, 0.0f);
+             for (const auto i : {floor_, ball, walls, pane}) {
+                 s.materials[i].sheen_color = {0.9f, 0.7f, 0.8f};
+                 s.materials[i].sheen_roughness = i == ball ? 0.8f : 0.3f;
+             }
+             s.materials[ball].clearcoat = 0.5f;
+         }},
         {"textured_lamp",
          [](Scene& s, Settings&) {
              s.materials[lamp].emissive_texture = add_image(s, 8, 8, [](auto x, auto y) {
