@@ -67,7 +67,10 @@ Comparison compare(const Image& image, const Image& reference) {
         levels.push_back(level);
     }
     result.pixels = squares.size();
-    result.mean_ratio = image_sum / reference_sum;
+    for (int c = 0; c < 3; ++c) {
+        const bool are_black = image_sum[c] == 0.0 && reference_sum[c] == 0.0;
+        result.mean_ratio[c] = are_black ? 1.0 : image_sum[c] / reference_sum[c];
+    }
     result.mse = measure(std::move(squares));
     result.rmse = {std::sqrt(result.mse.all), std::sqrt(result.mse.trimmed)};
     result.relmse = measure(std::move(relatives));

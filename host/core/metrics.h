@@ -31,7 +31,7 @@ struct Comparison {
     std::size_t image_non_finite = 0;      // pixels with NaN or infinity in a channel of the image
     std::size_t reference_non_finite = 0;  // the same in the reference
     std::size_t pixels = 0;                // pixels compared: finite in both
-    glm::dvec3 mean_ratio{0.0};            // mean(x) / mean(r) a channel; infinite or NaN where the reference is black
+    glm::dvec3 mean_ratio{0.0};            // mean(x) / mean(r) a channel; 1 where both are black, infinite where r is
     Measure mse;                           // (x - r)^2, (W m^-2 sr^-1)^2
     Measure rmse;                          // the square root of mse, W m^-2 sr^-1
     Measure relmse;                        // (x - r)^2 / (r^2 + 0.01)

@@ -189,6 +189,14 @@ TEST(Metrics, IdenticalPicturesHaveNoError) {
     EXPECT_EQ(c.psnr, std::numeric_limits<double>::infinity());
 }
 
+TEST(Metrics, BlackIsAsBrightAsBlack) {
+    const Image black{{3, 2}, std::vector<glm::vec3>(6, glm::vec3(0.0f))};
+    Image red = black;
+    red.rgb[4].r = 1.0f;
+    EXPECT_EQ(compare(black, black).mean_ratio, glm::dvec3(1.0));
+    EXPECT_EQ(compare(red, black).mean_ratio, glm::dvec3(std::numeric_limits<double>::infinity(), 1.0, 1.0));
+}
+
 TEST(Metrics, NonFinitePixelsAreCountedAndLeftOut) {
     auto [image, reference] = noisy_pair(40, 25, 2);
     image.rgb[3].g = std::numeric_limits<float>::quiet_NaN();
