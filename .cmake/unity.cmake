@@ -1,6 +1,6 @@
 # Several files as one for the compiler (CMAKE_UNITY_BUILD, which the presets release and ci turn on): what they include
-# is then read once, and a build takes a third of the time. Names in their unnamed namespaces must differ; a file whose
-# options are its own stays apart.
+# is then read once, and a build takes little more than half the time. Names in their unnamed namespaces must differ; a
+# file whose options are its own stays apart.
 
 # unite_folders(<target>): the files of a folder are one.
 function(unite_folders target)
