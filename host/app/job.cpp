@@ -114,6 +114,48 @@ IterationSums no_sums(const Job& job) {
     return sums;
 }
 
+/// As add_slice(), but throws what that returns.
+Report add_whole(const Job& job, const Cut& cut, IterationSums& sums) {
+    const fs::path file = slice_file(job, cut);
+    const Checkpoint checkpoint = read_checkpoint(file, identity_of(job, cut), job.plan.settings.size->pixels());
+    const std::size_t bytes = floats_of(job, cut) * sizeof(float);
+    if (checkpoint.state.size() != bytes || checkpoint.report.iterations != cut.count) {
+        throw Error(ExitCode::bad_scene,
+                    fmt::format("{} has {} bytes of sums over {} iterations, {} over {} are wanted", file.string(),
+                                checkpoint.state.size(), checkpoint.report.iterations, bytes, cut.count));
+    }
+    if (sums.iterations == 0) sums = no_sums(job);
+    Floats floats(checkpoint.state);
+    const auto add = [&](auto& sum) { sum += floats.take(); };
+    const auto take = [&](auto& value) { value = floats.take(); };
+    for (glm::dvec3& sum : sums.film) {
+        for (int c = 0; c < 3; ++c) add(sum[c]);
+    }
+    for (SurfaceSums& surface : sums.surfaces) each_of(surface, add, take);
+    if (job.plan.settings.error) {
+        const auto sizes = sizes_of(cut);
+        for (std::uint32_t group = 0; group < ERROR_GROUPS; ++group) {
+            sums.errors.sizes[group] += sizes[group];
+            if (sizes[group] == 0) continue;
+            for (glm::vec4& sum : sums.errors.of_group[group]) {
+                for (int c = 0; c < 4; ++c) add(sum[c]);
+            }
+        }
+    }
+    sums.iterations += cut.count;
+    return checkpoint.report;
+}
+
+/// What `read` returns, or throws where a slice is not there or is damaged.
+template <typename Read> std::variant<Report, Error> unless_absent(const Read& read) {
+    try {
+        return read();
+    } catch (const Error& error) {
+        if (error.code() == ExitCode::usage) throw;
+        return error;
+    }
+}
+
 // ---- job.json ----
 
 Json json_of(const Job& job) {
@@ -254,45 +296,16 @@ void write_slice(const Job& job, const Cut& cut, const Slice& slice) {
     write_checkpoint(slice_file(job, cut), identity_of(job, cut), {slice.report, {}, bytes_of(slice.sums)});
 }
 
-Report add_slice(const Job& job, const Cut& cut, IterationSums& sums) {
-    const fs::path file = slice_file(job, cut);
-    const Checkpoint checkpoint = read_checkpoint(file, identity_of(job, cut), job.plan.settings.size->pixels());
-    const std::size_t bytes = floats_of(job, cut) * sizeof(float);
-    if (checkpoint.state.size() != bytes || checkpoint.report.iterations != cut.count) {
-        throw Error(ExitCode::bad_scene,
-                    fmt::format("{} has {} bytes of sums over {} iterations, {} over {} are wanted", file.string(),
-                                checkpoint.state.size(), checkpoint.report.iterations, bytes, cut.count));
-    }
-    if (sums.iterations == 0) sums = no_sums(job);
-    Floats floats(checkpoint.state);
-    const auto add = [&](auto& sum) { sum += floats.take(); };
-    const auto take = [&](auto& value) { value = floats.take(); };
-    for (glm::dvec3& sum : sums.film) {
-        for (int c = 0; c < 3; ++c) add(sum[c]);
-    }
-    for (SurfaceSums& surface : sums.surfaces) each_of(surface, add, take);
-    if (job.plan.settings.error) {
-        const auto sizes = sizes_of(cut);
-        for (std::uint32_t group = 0; group < ERROR_GROUPS; ++group) {
-            sums.errors.sizes[group] += sizes[group];
-            if (sizes[group] == 0) continue;
-            for (glm::vec4& sum : sums.errors.of_group[group]) {
-                for (int c = 0; c < 4; ++c) add(sum[c]);
-            }
-        }
-    }
-    sums.iterations += cut.count;
-    return checkpoint.report;
+std::variant<Report, Error> add_slice(const Job& job, const Cut& cut, IterationSums& sums) {
+    return unless_absent([&] { return add_whole(job, cut, sums); });
 }
 
 std::optional<Error> fault_of(const Job& job, const Cut& cut) {
-    try {
-        read_checkpoint(slice_file(job, cut), identity_of(job, cut), job.plan.settings.size->pixels());
-        return std::nullopt;
-    } catch (const Error& error) {
-        if (error.code() == ExitCode::usage) throw;
-        return error;
-    }
+    const auto read = unless_absent([&] {
+        return read_checkpoint(slice_file(job, cut), identity_of(job, cut), job.plan.settings.size->pixels()).report;
+    });
+    const Error* fault = std::get_if<Error>(&read);
+    return fault ? std::optional(*fault) : std::nullopt;
 }
 
 }  // namespace vkcppm

@@ -13,6 +13,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "app/checkpoint_file.h"
@@ -74,12 +75,12 @@ PilotOnDisk read_pilot(const Job& job);
 std::filesystem::path slice_file(const Job& job, const Cut& cut);
 void write_slice(const Job& job, const Cut& cut, const Slice& slice);
 
-/// Adds what is on disk to the sums, empty at first: no memory is taken before a file is found whole. Throws like
-/// read_checkpoint(): Error(no_input) where it is not there, Error(bad_scene) where it is damaged, Error(usage) with
-/// what differs where it is of another job.
-Report add_slice(const Job& job, const Cut& cut, IterationSums& sums);
+/// Adds what is on disk to the sums, empty at first: no memory is taken before a file is found whole. The slice's
+/// report, or why there is none: Error(no_input) where the file is not there, Error(bad_scene) where it is damaged.
+/// Throws Error(usage) with what differs where it is of another job.
+std::variant<Report, Error> add_slice(const Job& job, const Cut& cut, IterationSums& sums);
 
-/// What add_slice() throws where a slice is not there or is damaged; throws where it is of another job.
+/// Why add_slice() would find none.
 std::optional<Error> fault_of(const Job& job, const Cut& cut);
 
 }  // namespace vkcppm

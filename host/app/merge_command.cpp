@@ -1,5 +1,6 @@
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -57,28 +58,28 @@ void execute(const MergeOptions& options) {
     std::vector<std::string> devices;
     std::size_t missing = 0;
     for (const Cut& cut : cuts) {
-        try {
-            const Report report = add_slice(job, cut, sums);
-            if (all.device.empty()) {
-                all.device = report.device;
-                all.driver = report.driver;
-            } else if (report.device != all.device || report.driver != all.driver) {
-                print_message(fmt::format("warning: {} was rendered on {}, {}, the pilot on {}, {}", name_of(cut),
-                                          report.device, report.driver, all.device, all.driver));
-            }
-            all.iterations += report.iterations;
-            all.emitted_paths += report.emitted_paths;
-            all.invalid += report.invalid;
-        } catch (const Error& fault) {
-            if (fault.code() == ExitCode::usage) throw;  // of another job
+        const auto added = add_slice(job, cut, sums);
+        if (const Error* fault = std::get_if<Error>(&added)) {
             const std::string shard = shard_of(job, cut);
             const std::string what =
                 fmt::format("{}{} {}: {}", name_of(cut), shard.empty() ? "" : " of " + shard,
-                            fault.code() == ExitCode::no_input ? "is missing" : "is broken", fault.what());
-            if (options.complete || cut.number == 0) throw Error(fault.code(), what);
+                            fault->code() == ExitCode::no_input ? "is missing" : "is broken", fault->what());
+            if (options.complete || cut.number == 0) throw Error(fault->code(), what);
             print_message("warning: " + what);
             ++missing;
+            continue;
         }
+        const Report& report = std::get<Report>(added);
+        if (all.device.empty()) {
+            all.device = report.device;
+            all.driver = report.driver;
+        } else if (report.device != all.device || report.driver != all.driver) {
+            print_message(fmt::format("warning: {} was rendered on {}, {}, the pilot on {}, {}", name_of(cut),
+                                      report.device, report.driver, all.device, all.driver));
+        }
+        all.iterations += report.iterations;
+        all.emitted_paths += report.emitted_paths;
+        all.invalid += report.invalid;
     }
     if (missing > 0) {
         print_message(fmt::format("warning: {} of {} slices are missing: the picture is that of {} of {} iterations",

@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -39,21 +40,21 @@ JobStatus status_of(const Job& job) {
     std::uint64_t since_first = 0;  // iterations
     double slowest = 0.0;           // seconds an iteration of one machine
     for (const Cut& cut : cuts_of(job)) {
-        try {
-            const Report report = add_slice(job, cut, sums);
-            status.iterations += cut.count;
-            status.cpu_seconds += report.cpu_seconds;
-            slowest = std::max(slowest, report.wall_seconds / cut.count);
-            if (cut.number == 0) continue;
-            ++status.slices;
-            const fs::file_time_type time = fs::last_write_time(slice_file(job, cut));
-            first = first ? std::min(*first, time) : time;
-            last = last ? std::max(*last, time) : time;
-            since_first += cut.count;
-        } catch (const Error& fault) {
-            if (fault.code() == ExitCode::usage) throw;
-            (fault.code() == ExitCode::no_input ? status.missing : status.broken).push_back(cut);
+        const auto added = add_slice(job, cut, sums);
+        if (const Error* fault = std::get_if<Error>(&added)) {
+            (fault->code() == ExitCode::no_input ? status.missing : status.broken).push_back(cut);
+            continue;
         }
+        const Report& report = std::get<Report>(added);
+        status.iterations += cut.count;
+        status.cpu_seconds += report.cpu_seconds;
+        slowest = std::max(slowest, report.wall_seconds / cut.count);
+        if (cut.number == 0) continue;
+        ++status.slices;
+        const fs::file_time_type time = fs::last_write_time(slice_file(job, cut));
+        first = first ? std::min(*first, time) : time;
+        last = last ? std::max(*last, time) : time;
+        since_first += cut.count;
     }
     // The first slice began before it was there: its own iterations do not count.
     const double seconds = first ? std::chrono::duration<double>(*last - *first).count() : 0.0;
