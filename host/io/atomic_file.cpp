@@ -1,6 +1,7 @@
 #include "io/atomic_file.h"
 
 #include <cerrno>
+#include <climits>
 #include <cstdio>
 #include <cstring>
 #include <random>
@@ -50,9 +51,12 @@ void write_all(int descriptor, std::string_view bytes, const fs::path& file) {
 /// An open temporary file beside its target; removed on destruction unless committed.
 class Part {
 public:
-    explicit Part(const fs::path& file) : file_(file), target_(replaceable(file)), part_(target_) {
-        // By process and by chance: containers that share a folder may each be process 1.
-        part_ += fmt::format(".{}.{:08x}.part", ::getpid(), std::random_device()());
+    explicit Part(const fs::path& file) : file_(file), target_(replaceable(file)) {
+        // By process and by chance: containers that share a folder may each be process 1. Of a name that is as long as
+        // names may be there is no room for all.
+        const std::string suffix = fmt::format(".{}.{:08x}.part", ::getpid(), std::random_device()());
+        const std::string name = target_.filename().string().substr(0, NAME_MAX - suffix.size());
+        part_ = target_.parent_path() / (name + suffix);
         descriptor_ = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
         if (descriptor_ < 0) fail_with_errno(file_);
     }

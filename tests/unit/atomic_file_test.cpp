@@ -72,6 +72,16 @@ TEST(AtomicFile, ReplacesWhatIsThere) {
     EXPECT_EQ(test::names_in(folder.path()), Names{"a"});
 }
 
+TEST(AtomicFile, TakesNamesAsLongAsTheyMayBe) {
+    const test::TemporaryFolder folder;
+    for (const std::size_t bytes : {230u, 244u, 255u}) {
+        const std::string name(bytes, 'n');
+        write_file(folder / name, "new");
+        EXPECT_EQ(test::read_bytes(folder / name), "new") << bytes;
+    }
+    EXPECT_EQ(test::names_in(folder.path()).size(), 3u);
+}
+
 TEST(AtomicFile, KeepsTheOldFileWhereTheDiskIsFull) {
     const test::TemporaryFolder folder;
     test::write_bytes(folder / "a", "good");
