@@ -69,9 +69,7 @@ struct Bsdf {
 const float LEAST_ACROSS = 1e-3;
 
 // Reflectance of the clearcoat, and what it leaves to the lobes below.
-float clearcoat_fresnel(Bsdf b, float cosine) {
-    return HAS_CLEARCOAT ? clearcoat_reflectance(b.clearcoat, cosine) : 0.0;
-}
+float clearcoat_fresnel(Bsdf b, float cosine) { return clearcoat_reflectance(b.clearcoat, cosine); }
 
 float below_clearcoat(Bsdf b, float cosine) { return 1.0 - clearcoat_fresnel(b, cosine); }
 

@@ -2,6 +2,8 @@
 #ifndef FRESNEL_GLSL
 #define FRESNEL_GLSL
 
+#include "include/kernel.glsl"
+
 // Of a smooth dielectric, unpolarised. cosine in [0, 1] on the side of incidence, eta = index on that side / index
 // beyond. cosine_t: cosine beyond, 0 under total internal reflection.
 float fresnel_dielectric(float cosine, float eta, out float cosine_t) {
@@ -23,6 +25,7 @@ const float CLEARCOAT_R0 = 0.04;  // KHR_materials_clearcoat: of index 1.5
 
 // Of a clearcoat of that strength.
 float clearcoat_reflectance(float clearcoat, float cosine) {
+    if (!HAS_CLEARCOAT) return 0.0;
     // precise: versions of Mesa rearrange it, each in its own way, and rounding differs.
     precise float fresnel = clearcoat * (CLEARCOAT_R0 + (1.0 - CLEARCOAT_R0) * schlick_power(cosine));
     return fresnel;

@@ -273,7 +273,7 @@ float coverage_of(SurfaceMaterial material) {
 
 // What gets out through the clearcoat over an emitter, by the cosine to its face (KHR_materials_clearcoat, Emission).
 float share_below_clearcoat(float clearcoat, float cosine) {
-    return HAS_CLEARCOAT ? 1.0 - clearcoat_reflectance(clearcoat, cosine) : 1.0;
+    return 1.0 - clearcoat_reflectance(clearcoat, cosine);
 }
 
 // What an emitter sends along a ray that has met it.

@@ -278,8 +278,7 @@ private:
 
 /// Whether a program without the extension could show the primitive: all of its accessors have data of their own.
 bool has_fallback(const GltfFile& file, const json& primitive) {
-    const json required = file.document.value("extensionsRequired", json::array());
-    if (std::ranges::find(required, extension) != required.end()) return false;
+    if (requires_extension(file, extension)) return false;
     const auto has_data = [&](const json& accessor) {
         return file.document["accessors"][accessor.get<std::size_t>()].contains("bufferView");
     };

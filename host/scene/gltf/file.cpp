@@ -274,4 +274,9 @@ GltfFile read_gltf_file(const std::filesystem::path& path, const std::optional<s
     return file;
 }
 
+bool requires_extension(const GltfFile& file, const char* extension) {
+    const json required = file.document.value("extensionsRequired", json::array());
+    return std::ranges::find(required, extension) != required.end();
+}
+
 }  // namespace vkcppm

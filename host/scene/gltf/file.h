@@ -38,4 +38,7 @@ struct GltfFile {
 GltfFile read_gltf_file(const std::filesystem::path& path,
                         const std::optional<std::filesystem::path>& root = std::nullopt);
 
+/// Whether the file says that it means nothing without the extension.
+bool requires_extension(const GltfFile& file, const char* extension);
+
 }  // namespace vkcppm

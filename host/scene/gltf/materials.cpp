@@ -1,6 +1,5 @@
 #include "scene/gltf/materials.h"
 
-#include <algorithm>
 #include <cfloat>
 #include <cmath>
 
@@ -181,13 +180,11 @@ private:
     /// does not require the extension, the one beside it, if any.
     std::optional<std::uint32_t> image_of_webp(const json& source, const json& webp, std::size_t index,
                                                std::optional<double> glossiness) {
-        const json required = file_.document.value("extensionsRequired", json::array());
-        const bool is_required = std::ranges::find(required, "EXT_texture_webp") != required.end();
         const bool has_other = source.contains("source");
         try {
             if (const auto image = images_.index(image_number(webp), glossiness)) return image;
         } catch (const Error&) {
-            if (is_required) throw;
+            if (requires_extension(file_, "EXT_texture_webp")) throw;
             warnings_.add(
                 fmt::format("its WebP cannot be read, {}", has_other ? "the image beside it is used" : "it is ignored"),
                 fmt::format("textures[{}]", index));
