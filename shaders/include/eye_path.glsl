@@ -278,7 +278,7 @@ void ask(inout EyePath path, Vertex v) {
 // Goes on with the ray to a light that has been traced, to behind a surface or to its end.
 void go_on_with_light_ray(inout EyePath path, uint found, Hit hit) {
     LightRay ray = path.light_rays.of[0];
-    bool reaches = reaches_light(ray, found, hit);
+    bool reaches = found == TRACE_MISS;
     if (reaches) find(path, ray.light, ray.layer);
     if (LIGHT_RAYS_PASS && !reaches) {
         Surface surface = surface_at(hit, ray.direction);

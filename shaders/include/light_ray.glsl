@@ -60,11 +60,9 @@ void take_one(inout LightRay ray, LightRay other, float u) {
     if (a + b > 0.0) ray.light *= (a + b) / (takes ? b : a);
 }
 
-// True where the trace of the ray has found nothing in between, but for what is as near to the light as positions are
-// known: of a lamp that is no larger the ray may meet another triangle than it was aimed at.
-bool reaches_light(LightRay ray, uint found, Hit hit) {
-    return found == TRACE_MISS || hit.triangle == ray.triangle || hit.t >= ray.distance - POSITION_ERROR;
-}
+// What is in between, but for what is as near to the light as positions are known: of a lamp that is no larger the ray
+// may meet another triangle than it was aimed at.
+Sought before_light(LightRay ray) { return Sought(ray.distance - POSITION_ERROR, ray.triangle, !LIGHT_RAYS_PASS); }
 
 // What of light passes a surface to go straight on.
 vec3 passes_straight(Surface surface, SurfaceMaterial material, vec3 direction) {

@@ -1,4 +1,4 @@
-// Nearest hit of a ray with the 4-wide quantised BVH. SIMD group: the subgroup, the lanes that run together. Reads
+// Nearest hit of a ray with the 4-wide quantised BVH, or whether there is any up to some distance. SIMD group: the subgroup, the lanes that run together. Reads
 // nodes and triangles; O(log triangles) steps a ray. The stack holds exactly what this tree can need. Fails only by
 // running out of `steps`, and says so. Where a child of the scene's tree is an instance of a mesh the ray goes on in
 // the mesh's space and through the mesh's own tree, and then back in the scene's. Written for software Vulkan, where a
@@ -17,6 +17,15 @@ struct Hit {
     uint instance;   // that it is a triangle of; NO_INSTANCE: of none
 };
 
+// What a ray looks for.
+struct Sought {
+    float within;  // distance beyond which nothing counts
+    uint but;      // a triangle that does not count either; NO_TRIANGLE: all do
+    bool any;      // whatever is there ends the ray: not the nearest alone
+};
+
+const Sought NEAREST = Sought(FAR, NO_TRIANGLE, false);
+
 #define TRACE_MISS 0u
 #define TRACE_HIT 1u
 #define TRACE_UNFINISHED 2u  // out of steps: nothing is known of the ray
@@ -32,7 +41,9 @@ struct Traversal {
     uint below;       // stack[top], kept here because a load from the stack takes long
     uint top;         // groups on the stack, those before `group`, none of them empty
     uint limit;       // group_near of the hit
-    Hit hit;          // nearest so far
+    Hit hit;          // nearest so far; before there is one, of NO_TRIANGLE at the distance that is sought within
+    uint but;         // of Sought
+    bool any;
     // Only where the scene has instances.
     vec3 outer_origin;     // the ray in the scene
     vec3 outer_direction;
@@ -66,7 +77,8 @@ void intersect_triangle(uint index, inout Traversal t) {
     // A parallel ray divides by zero. Comparisons with NaN fail, but a compiler may take it that there is none.
     // At the tip of a needle the third edge alone would let pass what is far beyond it.
     if (u >= -slack.x && v >= -slack.y && u + v <= 1.0 + max(slack.x, slack.y) && u <= 1.0 + slack.x &&
-        v <= 1.0 + slack.y && distance > 0.0 && distance < distance_left(t) && abs(determinant) > PARALLEL) {
+        v <= 1.0 + slack.y && distance > 0.0 && distance < distance_left(t) && abs(determinant) > PARALLEL &&
+        index != t.but) {
         t.hit = Hit(HAS_INSTANCES ? t.begin + distance : distance, index, vec2(u, v), t.instance);
     }
 }
@@ -124,15 +136,15 @@ vec3 inverse_of(vec3 direction) {
                      lessThan(abs(direction), vec3(1e-20)));
 }
 
-Traversal begin_traversal(vec3 origin, vec3 direction) {
+Traversal begin_traversal(vec3 origin, vec3 direction, Sought sought) {
     stack[0] = NO_GROUP;
-    Hit nothing = Hit(FAR, 0u, vec2(0.0), NO_INSTANCE);
+    Hit nothing = Hit(sought.within, NO_TRIANGLE, vec2(0.0), NO_INSTANCE);
     return Traversal(origin, direction, inverse_of(direction), 0u, NO_NODE, NO_GROUP, NO_GROUP, 0u, 0xffffffffu,
-                     nothing, origin, direction, 0.0, 1.0, NO_INSTANCE, 0u);
+                     nothing, sought.but, sought.any, origin, direction, 0.0, 1.0, NO_INSTANCE, 0u);
 }
 
 Traversal no_traversal() {
-    Traversal t = begin_traversal(vec3(0.0), vec3(0.0));
+    Traversal t = begin_traversal(vec3(0.0), vec3(0.0), NEAREST);
     t.node = NO_NODE;
     return t;
 }
@@ -303,6 +315,14 @@ void traverse(inout Traversal t, inout int steps, bool independent, bool running
         }
         t.leaf = wants ? NO_NODE : t.leaf;
         steps -= int(wants);
+        if (t.any) {
+            // Nothing that waits is taken any more.
+            bool found = t.hit.triangle != NO_TRIANGLE;
+            enters = enters && !found;
+            t.group = found ? NO_GROUP : t.group;
+            t.top = found ? 0u : t.top;
+            if (HAS_INSTANCES) t.bottom = found ? 0u : t.bottom;
+        }
         if (enters && enter_instance(t)) wants = false;
         t.limit = group_near(distance_left(t));
         bool asked = wants;
@@ -323,12 +343,12 @@ void traverse(inout Traversal t, inout int steps, bool independent, bool running
 }
 
 uint found_by(Traversal t) {
-    return t.node != NO_NODE ? TRACE_UNFINISHED : t.hit.t < FAR ? TRACE_HIT : TRACE_MISS;
+    return t.node != NO_NODE ? TRACE_UNFINISHED : t.hit.triangle != NO_TRIANGLE ? TRACE_HIT : TRACE_MISS;
 }
 
 // origin within the scene's bounds or at them, direction unit. Spends `steps` as traverse() does.
-uint trace(vec3 origin, vec3 direction, inout int steps, out Hit hit) {
-    Traversal t = begin_traversal(origin, direction);
+uint trace(vec3 origin, vec3 direction, Sought sought, inout int steps, out Hit hit) {
+    Traversal t = begin_traversal(origin, direction, sought);
     traverse(t, steps, false, true);
     hit = t.hit;
     return found_by(t);

@@ -21,7 +21,7 @@ void follow_path(inout EyePath path) {
         bool fresh = path.steps == int(params.step_budget);
         path.steps -= vertex_steps();
         Hit hit;
-        uint found = trace(path.at.origin, path.at.direction, path.steps, hit);
+        uint found = trace(path.at.origin, path.at.direction, NEAREST, path.steps, hit);
         if (found == TRACE_UNFINISHED) {
             leave_unfinished(path, fresh);
             break;
@@ -64,7 +64,7 @@ void follow_light_rays(inout EyePath path) {
         path.steps -= vertex_steps();
         LightRay ray = path.light_rays.of[0];
         Hit hit;
-        uint found = trace(ray.origin, ray.direction, path.steps, hit);
+        uint found = trace(ray.origin, ray.direction, before_light(ray), path.steps, hit);
         if (found == TRACE_UNFINISHED) {
             path.at.end = path.position.state;
             leave_unfinished(path, fresh);

@@ -175,14 +175,16 @@ void main() {
         vec3 origin = shadow ? light_ray.origin : state.origin;
         vec3 direction = shadow ? light_ray.direction : state.direction;
         Hit hit;
-        uint found = trace(origin, direction, steps, hit);
+        Sought sought = before_light(light_ray);
+        if (!shadow) sought = NEAREST;
+        uint found = trace(origin, direction, sought, steps, hit);
         if (found == TRACE_UNFINISHED) {
             if (fresh) atomicAdd(status.stuck, 1u);
             block_after(PASS_TRACE);
             break;
         }
         ++rays;
-        if (shadow && reaches_light(light_ray, found, hit)) {
+        if (shadow && found == TRACE_MISS) {
             state.radiance += light_ray.light;
             state.light_rays.of[0].distance = 0.0;
         } else if (found == TRACE_MISS) {

@@ -210,7 +210,7 @@ void main() {
         running = take_path(state, running, end);
         if (running && fresh) {
             if (state.met == 0u) begin_light_path(state);
-            traversal = begin_traversal(state.origin, state.direction);
+            traversal = begin_traversal(state.origin, state.direction, NEAREST);
             fresh = false;
         }
         traverse(traversal, steps, WAITS == 0u, running);

@@ -25,7 +25,7 @@ void main() {
             ray = next + subgroupBallotExclusiveBitCount(wanting);
             running = ray < end;
             wants = false;
-            if (running) traversal = begin_traversal(rays[ray].origin, rays[ray].direction);
+            if (running) traversal = begin_traversal(rays[ray].origin, rays[ray].direction, NEAREST);
         }
         next += subgroupBallotBitCount(wanting);
         traverse(traversal, steps, true, running);

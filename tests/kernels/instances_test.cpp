@@ -25,6 +25,9 @@
 namespace vkcppm::test {
 namespace {
 
+constexpr std::uint32_t occlusion_words[] = {
+#include "occlusion.spv.inc"
+};
 constexpr std::uint32_t surface_words[] = {
 #include "surface.spv.inc"
 };
@@ -172,9 +175,9 @@ double t_bound(const Copies& copies, std::uint32_t triangle, const gpu::RayInput
 
 class Instances : public GpuTest {
 protected:
-    template <typename Output>
+    template <typename Output, typename Input>
     std::vector<Output> run(const char* name, std::span<const std::uint32_t> words, const FlatScene& flat,
-                            const std::vector<gpu::RayInput>& rays) {
+                            const std::vector<Input>& rays) {
         Probe probe(name, words, flat.bvh.stack, FEATURE_INSTANCES);
         probe.input(Binding::nodes, flat.bvh.nodes);
         probe.input(Binding::triangles, flat.triangles);
@@ -224,6 +227,30 @@ TEST_F(Instances, AreMetWhereTheirCopiesAre) {
             EXPECT_GT(in_instances, rays.size() / 4);
             EXPECT_LT(undecided, rays.size() / 4);
         }
+    }
+}
+
+TEST_F(Instances, AreInTheWayWhereTheyAreMet) {
+    Random random(34);
+    for (const double scale : {1e-4, 1.0, 1e6}) {
+        SCOPED_TRACE(fmt::format("scale {:g}", scale));
+        const Scene made = made_scene(random, scale, 60);
+        const FlatScene flat = flatten(made);
+        const Copies copies(made, flat);
+        const auto rays = rays_at(copies, random, 3000);
+        const auto nearest = trace(flat, rays);
+        std::vector<gpu::OcclusionInput> inputs;
+        std::vector<std::uint32_t> want;
+        std::size_t in_instances = 0;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const bool met = nearest[i].found == found_hit;
+            const double within = met ? nearest[i].t * (i % 2 == 0 ? 1.5 : 0.5) : FAR;
+            in_instances += met && i % 2 == 0 && nearest[i].instance != NO_INSTANCE;
+            inputs.push_back({rays[i].origin, rays[i].direction, float(within), NO_TRIANGLE});
+            want.push_back(met && i % 2 == 0 ? found_hit : found_miss);
+        }
+        EXPECT_GT(in_instances, rays.size() / 8);
+        EXPECT_EQ(run<std::uint32_t>("occlusion", occlusion_words, flat, inputs), want);
     }
 }
 

@@ -154,6 +154,12 @@ struct RayInput {
     vec3 origin;
     vec3 direction;
 };
+struct OcclusionInput {
+    vec3 origin;
+    vec3 direction;
+    float within;
+    uint but;  // a triangle, or NO_TRIANGLE
+};
 struct RayOutput {
     uint found;  // TRACE_*
     float t;

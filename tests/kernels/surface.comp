@@ -17,7 +17,7 @@ void main() {
     int steps = int(launch.argument);
     vec3 direction = rays[i].direction;
     Hit hit;
-    uint found = trace(rays[i].origin, direction, steps, hit);
+    uint found = trace(rays[i].origin, direction, NEAREST, steps, hit);
     SurfaceOutput result;
     result.found = found;
     if (found == TRACE_HIT) {

@@ -13,7 +13,7 @@ void main() {
     if (i >= launch.items) return;
     int steps = int(launch.argument);
     Hit hit;
-    uint found = trace(rays[i].origin, rays[i].direction, steps, hit);
+    uint found = trace(rays[i].origin, rays[i].direction, NEAREST, steps, hit);
     outputs[i] = RayOutput(found, hit.t, hit.triangle, hit.barycentric, int(launch.argument) - steps,
                            hit.instance);
 }

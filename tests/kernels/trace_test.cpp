@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <random>
+#include <ranges>
 #include <vector>
 
 #include <fmt/format.h>
@@ -23,6 +24,10 @@
 
 namespace vkcppm::test {
 namespace {
+
+constexpr std::uint32_t occlusion_words[] = {
+#include "occlusion.spv.inc"
+};
 
 // A ray passes an edge undecidably close within this distance, frame units: rounding of the intersection.
 constexpr double edge_distance = 1e-6;
@@ -127,6 +132,16 @@ protected:
         probe.run(rays.size(),
                   {.iteration = 0, .last_round = 0, .argument = step_budget, .items = std::uint32_t(rays.size())});
         return probe.result<gpu::RayOutput>(PROBE_OUTPUT, rays.size());
+    }
+
+    std::vector<std::uint32_t> occlusion(const FlatScene& flat, const std::vector<gpu::OcclusionInput>& rays) {
+        Probe probe("occlusion", occlusion_words, flat.bvh.stack);
+        probe.input(Binding::nodes, flat.bvh.nodes);
+        probe.input(Binding::triangles, flat.triangles);
+        probe.input(PROBE_INPUT, rays);
+        probe.output<std::uint32_t>(PROBE_OUTPUT, rays.size());
+        probe.run(rays.size(), {.argument = step_budget, .items = std::uint32_t(rays.size())});
+        return probe.result<std::uint32_t>(PROBE_OUTPUT, rays.size());
     }
 };
 
@@ -355,6 +370,56 @@ TEST_F(Trace, ClosedMeshesLetNothingOut) {
                                << " at vertices, " << by_sort[2] << " at middles of edges, " << by_sort[3]
                                << " at edges); " << first;
         EXPECT_LT(longest, 500) << name << ": steps of the longest ray";
+    }
+}
+
+// Rays to lights: whether anything is in the way, before the light and but for the light itself.
+TEST_F(Trace, FindsWhetherThereIsAnythingOnTheWay) {
+    Random random(14);
+    for (const Soup& soup : soups()) {
+        SCOPED_TRACE(soup.name);
+        Scene made;
+        add_material(made, lambert(glm::vec3(0.5f)));
+        for (int i = 0; i < soup.triangles; ++i) soup.add(made, i, random);
+        const FlatScene flat = flatten(made);
+        const Scene scene = as_uploaded(flat);
+        const auto rays = rays_at(scene, random, 2000);
+        std::vector<gpu::OcclusionInput> inputs;
+        for (const auto& ray : rays) {
+            const auto nearest = oracle::nearest_hit(scene, {glm::dvec3(ray.origin), glm::dvec3(ray.direction)});
+            const bool leaves_out = nearest && inputs.size() % 2 == 0;
+            const double within = inputs.size() % 3 == 0 ? 1e30 : (nearest ? nearest->t : 1.0) * uniform(random, 0.5, 2);
+            inputs.push_back({ray.origin, ray.direction, float(within), leaves_out ? nearest->triangle : NO_TRIANGLE});
+        }
+        const auto found = occlusion(flat, inputs);
+        std::size_t blocked = 0, undecided = 0;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            ASSERT_NE(found[i], found_unfinished) << "ray " << i;
+            bool certain = false, near = false;  // that something is there, or is but for rounding
+            for (std::uint32_t triangle = 0; triangle < scene.triangles.size(); ++triangle) {
+                if (triangle == inputs[i].but) continue;
+                const auto hit =
+                    oracle::intersect(scene, triangle, {glm::dvec3(rays[i].origin), glm::dvec3(rays[i].direction)});
+                if (!hit) continue;
+                const double bound = t_bound(flat, triangle, rays[i], hit->t);
+                near = near || hit->t < inputs[i].within + bound;
+                certain = certain || (hit->t < inputs[i].within - bound && hit->t > bound &&
+                                      distance_to_edges(scene, triangle, rays[i]) > edge_distance);
+            }
+            const bool got = found[i] == found_hit;
+            blocked += got;
+            if (got == certain) continue;
+            ++undecided;
+            ASSERT_TRUE(got) << "ray " << i << " missed what is before " << inputs[i].within;
+            const auto touches = [&](std::uint32_t triangle) {
+                return distance_to_edges(scene, triangle, rays[i]) <= edge_distance;
+            };
+            ASSERT_TRUE(near || std::ranges::any_of(std::views::iota(0u, std::uint32_t(scene.triangles.size())),
+                                                    touches))
+                << "ray " << i << " met something before " << inputs[i].within << " where nothing is";
+        }
+        EXPECT_GT(blocked, rays.size() / 20) << "too few to mean anything";
+        EXPECT_LT(undecided, rays.size() / 3);
     }
 }
 
