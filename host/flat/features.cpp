@@ -73,7 +73,7 @@ template <> std::string reason_of<FEATURE_INSTANCES>(const Asked& asked) {
 template <> std::string reason_of<FEATURE_TEXTURED_LIGHTS>(const Asked& asked) {
     const auto textured = std::count_if(asked.flat.lights.begin(), asked.flat.lights.end(),
                                         [](const gpu::Light& l) { return l.textured != 0; });
-    return textured > 0 ? fmt::format("{} parts of emitters with a texture or alpha", textured) : "";
+    return textured > 0 ? fmt::format("{} parts of emitters with a texture, alpha or a clearcoat", textured) : "";
 }
 
 template <> std::string reason_of<FEATURE_NESTED>(const Asked& asked) { return asked.flat.nested; }

@@ -51,8 +51,8 @@ void add_emitters(const Scene& scene, const FlatScene& flat, std::vector<Weighed
         light.double_sided = (surface.flags & SURFACE_DOUBLE_SIDED) != 0 ? 1 : 0;
         const double area = 0.5 * glm::length(glm::cross(glm::dvec3(triangle.e1), glm::dvec3(triangle.e2)));
         light.power = glm::vec3(glm::dvec3(surface.emission) * (pi * area * (light.double_sided ? 2.0 : 1.0)));
-        const bool has_textures = surface.texture[TEXTURE_EMISSIVE] != 0 || surface.texture[TEXTURE_CLEARCOAT] != 0;
-        if (has_textures || (surface.flags & (SURFACE_MASK | SURFACE_BLEND)) != 0) {
+        const bool is_uneven = surface.texture[TEXTURE_EMISSIVE] != 0 || surface.clearcoat > 0.0f;
+        if (is_uneven || (surface.flags & (SURFACE_MASK | SURFACE_BLEND)) != 0) {
             const Triangle source = source_of(scene, flat, i);
             add_textured_emitter(scene, source, light, lights, means[source.material]);
         } else {

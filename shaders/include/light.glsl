@@ -36,10 +36,11 @@ float share_within_range(float range, float distance) {
 float sample_reach(float range, float u) { return range * sqrt(sqrt(1.0 - u)); }
 
 // Whether of what a light emits only a share gets out, by place or direction.
-bool has_share(Light light) { return HAS_CLEARCOAT || (HAS_TEXTURED_LIGHTS && light.textured != 0u); }
+bool has_share(Light light) { return HAS_TEXTURED_LIGHTS && light.textured != 0u; }
 
-// That share of a triangle at a point of it: its textures, where the surface is there, below its clearcoat.
-vec3 emitted_share(Light light, vec2 b, float cosine) {
+// That share of a triangle at a point of it for a ray of that direction that meets it there: its textures, where the
+// surface is there, below its clearcoat.
+vec3 emitted_share(Light light, vec2 b, vec3 direction) {
     vec2 barycentric = (1.0 - b.x - b.y) * light.corner[0] + b.x * light.corner[1] + b.y * light.corner[2];
     SurfaceMaterial material = materials_at(material_of(texelFetch(shading_texels, int(light.triangle)).w));
     vec4 coordinates = HAS_TEXTURES ? texcoords_at(light.triangle, barycentric) : vec4(0.0);
@@ -52,11 +53,20 @@ vec3 emitted_share(Light light, vec2 b, float cosine) {
         }
     }
     vec3 share = vec3(coverage_of(material));
-    if (HAS_TEXTURES) {
-        share *= texture_at(material.texture[TEXTURE_EMISSIVE], coordinates).rgb;
-        if (HAS_CLEARCOAT) material.clearcoat *= texture_at(material.texture[TEXTURE_CLEARCOAT], coordinates).r;
+    if (HAS_TEXTURES) share *= texture_at(material.texture[TEXTURE_EMISSIVE], coordinates).rgb;
+    if (HAS_CLEARCOAT && material.clearcoat > 0.0) {
+        Hit hit = Hit(0.0, light.triangle, barycentric, NO_INSTANCE);  // what emits is no instance
+        Surface surface = surface_at(hit, direction);
+        if (HAS_TEXTURES) {
+            material.clearcoat *= texture_at(material.texture[TEXTURE_CLEARCOAT], coordinates).r;
+            if (HAS_NORMAL_MAPS) {
+                vec3 texel = texture_at(material.texture[TEXTURE_CLEARCOAT_NORMAL], coordinates).xyz;
+                surface.clearcoat_normal = bent_clearcoat(hit, direction, surface, material, texel);
+            }
+        }
+        share *= share_below_clearcoat(material, surface, direction);
     }
-    return share * share_below_clearcoat(material.clearcoat, cosine);
+    return share;
 }
 
 // A light in proportion to its power (alias table, Walker 1974), by the first two of four random words.
@@ -143,7 +153,7 @@ LightSample sample_light(AskedGroup group, uvec2 bits, vec2 v, vec3 position) {
         s.triangle = lights_at(index).triangle;
         float inverse = cosine / (s.distance * s.distance);
         s.radiance = light.power * (inverse / (double_sided ? 2.0 * PI : PI));
-        if (has_share(light)) s.radiance *= emitted_share(light, b, cosine);
+        if (has_share(light)) s.radiance *= emitted_share(light, b, s.direction);
         if (cosine > 0.0) s.density = density_of(s.triangle, double_sided) / inverse;
     }
     if ((HAS_POINT_LIGHTS || HAS_SPOT_LIGHTS) &&
@@ -195,7 +205,7 @@ uint emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 powe
         vec3 extent = abs(light.position) + abs(light.e1) + abs(light.e2);
         float error = 4.8e-7 * max(extent.x, max(extent.y, extent.z));
         origin = light.position + b.x * light.e1 + b.y * light.e2 + error * n;
-        if (has_share(light)) power *= emitted_share(light, b, local.z);
+        if (has_share(light)) power *= emitted_share(light, b, -direction);
     }
     if (HAS_POINT_LIGHTS && light.kind == LIGHT_POINT) {
         direction = sample_azimuth(1.0 - 2.0 * v.x, v.y);

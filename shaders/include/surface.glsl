@@ -148,6 +148,14 @@ vec3 bent_normal(Hit hit, vec3 front_normal, uint texture_number, float scale, v
     return normalize(n.x * t + n.y * b + n.z * front_normal);
 }
 
+// The normal of the clearcoat, bent by a texel of its own normal texture. surface: with the normal of its vertices.
+vec3 bent_clearcoat(Hit hit, vec3 direction, Surface surface, SurfaceMaterial material, vec3 texel) {
+    float side = surface.front ? 1.0 : -1.0;
+    vec3 n = side * bent_normal(hit, side * surface.normal, material.texture[TEXTURE_CLEARCOAT_NORMAL],
+                                material.clearcoat_normal_scale, texel);
+    return dot(n, direction) >= 0.0 ? surface.geometric : n;
+}
+
 // Turns the tangent of the surface to where the facets of the material are wider, in the frame that normal textures are
 // in: of the texture coordinates of the normal texture, else of the anisotropy texture, else of the first set. Without
 // such a frame the material has no anisotropy. texel: of the anisotropy texture, where there is one.
@@ -246,17 +254,14 @@ SurfaceMaterial material_at(Hit hit, vec3 direction, inout Surface surface) {
             material.sheen_roughness *= texels[TEXTURE_SHEEN_ROUGHNESS].a;
         }
         if (HAS_NORMAL_MAPS) {
-            float side = surface.front ? 1.0 : -1.0;
-            vec3 n = side * surface.normal;
-            surface.normal = side * bent_normal(hit, n, material.texture[TEXTURE_NORMAL], material.normal_scale,
-                                                texels[TEXTURE_NORMAL].xyz);
-            if (dot(surface.normal, direction) >= 0.0) surface.normal = surface.geometric;
             if (HAS_CLEARCOAT) {
                 surface.clearcoat_normal =
-                    side * bent_normal(hit, n, material.texture[TEXTURE_CLEARCOAT_NORMAL],
-                                       material.clearcoat_normal_scale, texels[TEXTURE_CLEARCOAT_NORMAL].xyz);
-                if (dot(surface.clearcoat_normal, direction) >= 0.0) surface.clearcoat_normal = surface.geometric;
+                    bent_clearcoat(hit, direction, surface, material, texels[TEXTURE_CLEARCOAT_NORMAL].xyz);
             }
+            float side = surface.front ? 1.0 : -1.0;
+            surface.normal = side * bent_normal(hit, side * surface.normal, material.texture[TEXTURE_NORMAL],
+                                                material.normal_scale, texels[TEXTURE_NORMAL].xyz);
+            if (dot(surface.normal, direction) >= 0.0) surface.normal = surface.geometric;
         }
     }
     if (HAS_ANISOTROPY && material.anisotropy.z > 0.0) {
@@ -271,14 +276,14 @@ float coverage_of(SurfaceMaterial material) {
     return has(material, SURFACE_BLEND) ? material.opacity : 1.0;
 }
 
-// What gets out through the clearcoat over an emitter, by the cosine to its face (KHR_materials_clearcoat, Emission).
-float share_below_clearcoat(float clearcoat, float cosine) {
-    return 1.0 - clearcoat_reflectance(clearcoat, cosine);
+// What gets out through the clearcoat over an emitter to a ray that meets it (KHR_materials_clearcoat, Emission).
+float share_below_clearcoat(SurfaceMaterial material, Surface surface, vec3 direction) {
+    return 1.0 - clearcoat_reflectance(material.clearcoat, min(1.0, -dot(direction, surface.clearcoat_normal)));
 }
 
 // What an emitter sends along a ray that has met it.
 vec3 met_radiance(SurfaceMaterial material, Surface surface, vec3 direction) {
-    return material.emission * share_below_clearcoat(material.clearcoat, -dot(direction, surface.geometric));
+    return material.emission * share_below_clearcoat(material, surface, direction);
 }
 
 #endif

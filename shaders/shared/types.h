@@ -309,7 +309,7 @@ RECORD(TextureLookup)
     ARRAY(FEATURE_TEXTURED_LIGHTS, vec2, corner, 3) \
     /* triangle: into the leaf-ordered ones; textured: that which it is a part of */ \
     OPTIONAL(FEATURE_AREA_LIGHTS, 0u, uint, triangle) \
-    OPTIONAL(FEATURE_TEXTURED_LIGHTS, 0u, uint, textured)  /* its radiance or alpha comes from textures */
+    OPTIONAL(FEATURE_TEXTURED_LIGHTS, 0u, uint, textured)  /* of its radiance a share gets out, by place or direction */
 RECORD(Light)
 
 // Lights are asked for in groups: local ones (triangles, points, spots), directional ones, the environment. Each has

@@ -306,7 +306,6 @@ TEST_F(Textures, SurfacesAreTheReferences) {
                 expect("base colour", out.value[k], want.base_color[k], 5e-4);
                 expect("sheen colour", out.sheen[k], want.bsdf.sheen_color[k], 1e-5);
                 expect("specular colour", out.specular_color[k], want.bsdf.specular_color[k], 1e-5);
-                if (want.front || material.double_sided) expect("emission", out.emission[k], want.emission[k], 3e-5);
             }
             expect("metallic", out.metal[0], want.bsdf.metallic, 1e-5);
             expect("alpha", out.metal[1] * out.metal[1], want.bsdf.alpha, 1e-5);
@@ -355,6 +354,10 @@ TEST_F(Textures, SurfacesAreTheReferences) {
                 expect_normal("normal", out.normal, want.bsdf.normal);
                 expect_normal("normal of the clearcoat", out.clearcoat_normal, want.bsdf.coat_normal);
                 expect_normal("tangent", out.tangent, want.bsdf.tangent);
+                // What the rounding of the coat's normal makes of its Fresnel term, by Schlick.
+                const double steepness = 4.8 * want.bsdf.coat * std::pow(1.0 + glm::dot(want.bsdf.coat_normal, d), 4.0);
+                for (int k = 0; k < 3 && (want.front || material.double_sided); ++k)
+                    expect("emission", out.emission[k], want.emission[k], 3e-5 + steepness * rounding);
                 ++normals;
                 mirrored += determinant > 0.0 ? 1 : 0;
                 backs += want.front ? 0 : 1;

@@ -143,11 +143,13 @@ Surface surface_at(const Scene& scene, const Hit& hit, const glm::dvec3& directi
     const double coat_roughness =
         material.clearcoat_roughness * lookup(scene, hit, material.clearcoat_roughness_texture, Encoding::linear).g;
     bsdf.coat_alpha = coat_roughness * coat_roughness;
-    const double coat_fresnel =
-        0.04 + 0.96 * std::pow(1.0 - std::abs(glm::dot(surface.geometric_normal, direction)), 5.0);
-    surface.emission *= 1.0 - bsdf.coat * coat_fresnel;  // KHR_materials_clearcoat, Emission
     bsdf.coat_normal = side * mapped_normal(scene, hit, vertex_normal, material.clearcoat_normal_texture,
                                             material.clearcoat_normal_scale);
+    // Where the coat's normal faces away the face's stands in.
+    const double facing = -glm::dot(bsdf.coat_normal, direction);
+    const double coat_cosine = facing > 0.0 ? facing : -glm::dot(surface.geometric_normal, direction);
+    const double coat_fresnel = 0.04 + 0.96 * std::pow(1.0 - coat_cosine, 5.0);
+    surface.emission *= 1.0 - bsdf.coat * coat_fresnel;  // KHR_materials_clearcoat, Emission
     bsdf.film = material.iridescence * lookup(scene, hit, material.iridescence_texture, Encoding::linear).r;
     bsdf.film_ior = material.iridescence_ior;
     bsdf.film_thickness =

@@ -257,6 +257,8 @@ const std::vector<Case>& material_cases() {
              s.materials[lamp].clearcoat = 1.0f;
              s.materials[lamp].clearcoat_texture =
                  add_image(s, 4, 4, [](auto x, auto) { return glm::vec4(x < 2 ? 1.0f : 0.25f, 0.0f, 0.0f, 1.0f); });
+             s.materials[lamp].clearcoat_normal_texture =
+                 add_image(s, 2, 2, [](auto x, auto) { return glm::vec4(x == 0 ? 0.8f : 0.3f, 0.5f, 0.9f, 1.0f); });
          }},
         {"unlit", [](Scene& s, Settings&) { s.materials[pane].unlit = true; }},
         {"lens",
