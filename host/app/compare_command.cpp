@@ -5,6 +5,7 @@
 #include "app/console.h"
 #include "app/measures.h"
 #include "app/record.h"
+#include "core/error.h"
 #include "io/exr.h"
 #include "study/measures.h"
 
@@ -44,6 +45,10 @@ void execute(const CompareOptions& options) {
     const Image image = read_exr(options.image);
     const PictureMeasures measures = measure(image, read_exr(options.reference));
     const Comparison& comparison = measures.comparison;
+    if (comparison.pixels == 0) {
+        throw Error(ExitCode::bad_scene, fmt::format("no pixel is finite in both {} and {}", options.image.string(),
+                                                     options.reference.string()));
+    }
     if (comparison.pixels < image.extent.pixels()) {
         print_message(
             fmt::format("warning: {} pixels of the image and {} of the reference are NaN or infinite; "

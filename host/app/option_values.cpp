@@ -24,6 +24,19 @@ template <typename Number> bool take_number(std::string_view& text, Number& numb
     return true;
 }
 
+/// Seconds of a time such as 90, 90s, 2m, 1.5h or 500ms; nothing where it is none.
+std::optional<double> seconds_of(const std::string& text) {
+    constexpr std::pair<std::string_view, double> units[] = {
+        {"", 1.0}, {"s", 1.0}, {"ms", 1e-3}, {"m", 60.0}, {"h", 3600.0}};
+    std::string_view rest = text;
+    double number = 0.0;
+    if (!take_number(rest, number)) return std::nullopt;
+    for (const auto& [unit, scale] : units) {
+        if (rest == unit && std::isfinite(number * scale)) return number * scale;
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 void refuse(const std::string& option, const std::string& text, const std::string& wanted) {
@@ -33,8 +46,10 @@ void refuse(const std::string& option, const std::string& text, const std::strin
 std::uint32_t parse_whole(const std::string& option, const std::string& text) {
     std::string_view rest = text;
     std::uint32_t number = 0;
-    if (!take_number(rest, number) || !rest.empty())
-        refuse(option, text, fmt::format("a whole number from 0 to {}", std::numeric_limits<std::uint32_t>::max()));
+    if (!take_number(rest, number) || !rest.empty()) {
+        const bool is_large = text.find_first_not_of("0123456789") == std::string::npos && !text.empty();
+        refuse(option, text, fmt::format("a whole number{}", is_large ? " below 2^32" : ", such as 64"));
+    }
     return number;
 }
 
@@ -87,8 +102,10 @@ std::string parse_name(const std::string& option, const std::string& text) {
 std::optional<double> parse_exposure(const std::string& option, const std::string& text) {
     if (text == "auto") return std::nullopt;
     constexpr double most = 128.0;  // stops: any float becomes white or black
-    const double stops = parse_real(option, text);
-    if (std::abs(stops) > most) refuse(option, text, fmt::format("auto or a number from {} to {}", -most, most));
+    std::string_view rest = text;
+    double stops = 0.0;
+    if (!take_number(rest, stops) || !rest.empty() || !(std::abs(stops) <= most))
+        refuse(option, text, fmt::format("auto or a number from {} to {}", -most, most));
     return stops;
 }
 
@@ -135,20 +152,17 @@ PunctualUnits parse_punctual_units(const std::string& option, const std::string&
     refuse(option, text, "radiometric, photometric or auto");
 }
 
-/// Seconds of a duration such as 90, 90s, 2m, 1.5h or 500ms.
 double parse_seconds(const std::string& option, const std::string& text) {
-    std::string_view unit = text;
-    double number = 0.0;
-    if (take_number(unit, number)) {
-        const double scale = unit.empty() || unit == "s" ? 1.0
-                             : unit == "ms"              ? 1e-3
-                             : unit == "m"               ? 60.0
-                             : unit == "h"               ? 3600.0
-                                                         : 0.0;
-        const double seconds = number * scale;
-        if (std::isfinite(seconds) && seconds > 0.0) return seconds;
-    }
-    refuse(option, text, "a time greater than 0, such as 90, 90s, 2m, 1.5h or 500ms");
+    const std::optional<double> seconds = seconds_of(text);
+    if (!seconds || !(*seconds > 0.0))
+        refuse(option, text, "a time greater than 0, such as 90, 90s, 2m, 1.5h or 500ms");
+    return *seconds;
+}
+
+double parse_moment(const std::string& option, const std::string& text) {
+    const std::optional<double> seconds = seconds_of(text);
+    if (!seconds) refuse(option, text, "a time in seconds, such as 1.5 or 1.5s");
+    return *seconds;
 }
 
 namespace {

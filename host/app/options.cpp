@@ -4,9 +4,11 @@
 #include <array>
 #include <cassert>
 #include <initializer_list>
+#include <numeric>
 #include <sstream>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -130,7 +132,7 @@ void add_scene(CLI::App& app, SceneOptions& scene) {
         ->type_name("DIR");
     add(app, "--animation", "NAME|INDEX|all", scene.animation, parse_name,
         "Put nodes, joints and morph targets where this animation has them (default: at rest)");
-    add(app, "--at", "SECONDS", scene.at, parse_real, "At this time of the animation (default: 0)")
+    add(app, "--at", "SECONDS", scene.at, parse_moment, "At this time of the animation (default: 0)")
         ->needs("--animation");
     add(app, "--variant", "NAME|INDEX", scene.variant, parse_name,
         "Materials of this variant (KHR_materials_variants)");
@@ -208,6 +210,21 @@ Entrant parse_entrant(const std::string& text, const Settings& common) {
         throw Error(ExitCode::usage, fmt::format("--estimators: '{}': {}", text, error.what()));
     }
     return entrant;
+}
+
+/// Letters that are put in, left out or replaced between two words (Levenshtein 1966).
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t(0));
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = std::exchange(row[0], i + 1);
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+        }
+    }
+    return row.back();
 }
 
 /// A word as a shell takes it.
@@ -539,19 +556,70 @@ struct Command {
     std::string full_name() const { return name.empty() ? "vkcppm" : fmt::format("vkcppm {}", name); }
 };
 
+/// The option that was most likely meant by one that there is not: of which that is the beginning, or the other way
+/// round, or from which slips part it; empty where there is none.
+std::string likely_option(const CLI::App& app, const std::string& word) {
+    const std::string asked = word.substr(0, word.find('='));
+    std::string likely;
+    if (!asked.starts_with("--") || asked.size() < 5) return likely;
+    std::size_t least = 3;  // slips
+    for (const CLI::Option* option : app.get_options()) {
+        for (const std::string& long_name : option->get_lnames()) {
+            const std::string name = "--" + long_name;
+            const bool begins = name.starts_with(asked) || asked.starts_with(name);
+            const std::size_t slips = begins ? 1 : edit_distance(asked, name);
+            if (slips >= least) continue;
+            least = slips;
+            likely = name;
+        }
+    }
+    return likely;
+}
+
+/// The words that have no place; the one behind which all are no options is none of them.
+Words extra_words(const CLI::App& app) {
+    Words extra = app.remaining();
+    std::erase(extra, "--");
+    return extra;
+}
+
+/// What is wrong with the words: the first that has no place is more than what CLI11 finds missing for it.
+std::string what_is_wrong(const CLI::App& app, const std::string& found) {
+    const Words extra = extra_words(app);
+    if (!extra.empty() && extra.front().starts_with('-')) {
+        const std::string likely = likely_option(app, extra.front());
+        return fmt::format("there is no option {}{}", extra.front(), likely.empty() ? "" : ": is it " + likely + "?");
+    }
+    for (const CLI::Option* option : app.get_options()) {
+        const Words results = option->count() > 0 ? option->results() : Words();
+        if (!extra.empty() && option->get_positional() && !results.empty()) {
+            return fmt::format("'{}' has no place: {} is '{}'", extra.front(), option->get_name(), results.front());
+        }
+        if (extra.empty() && results.size() > 1 && option->get_items_expected_max() == 1) {
+            return fmt::format("{} is given {} times: '{}', '{}'", option->get_name(), results.size(), results[0],
+                               results[1]);
+        }
+    }
+    return extra.empty() ? found : fmt::format("'{}' has no place", extra.front());
+}
+
 template <typename T> Options read(const Command& command, const Words& words) {
     T options;
     CLI::App app(command.about, command.full_name());
     declare(app, options);
+    app.allow_extras();
+    std::string wrong;
     try {
         app.parse(Words(words.rbegin(), words.rend()));  // CLI11 takes them last word first
+        if (!extra_words(app).empty()) wrong = what_is_wrong(app, "");
     } catch (const CLI::CallForHelp&) {
         return TextOptions{app.help()};
     } catch (const CLI::CallForVersion& version) {
         return TextOptions{std::string(version.what()) + "\n"};
     } catch (const CLI::ParseError& error) {
-        throw Error(ExitCode::usage, fmt::format("{} (see {} --help)", error.what(), app.get_name()));
+        wrong = what_is_wrong(app, error.what());
     }
+    if (!wrong.empty()) throw Error(ExitCode::usage, fmt::format("{} (see {} --help)", wrong, app.get_name()));
     finish(app, words, options);
     return options;
 }

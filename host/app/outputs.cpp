@@ -32,7 +32,12 @@ void check_ending(const Output& output) {
 /// has links to follow, which weakly_canonical() does only where it is told of one.
 fs::path name_of(const fs::path& file) {
     if (file.empty()) return file;  // no name, which whoever opens it refuses
-    return is_standard_output(file) ? "/dev/stdout" : fs::weakly_canonical(fs::absolute(file));
+    if (is_standard_output(file)) return "/dev/stdout";
+    // A pipe of the shell's has none, and no file in a folder that is gone: whoever opens it says so.
+    std::error_code error;
+    const fs::path absolute = fs::absolute(file, error);
+    const fs::path name = error ? absolute : fs::weakly_canonical(absolute, error);
+    return error ? file : name;
 }
 
 }  // namespace

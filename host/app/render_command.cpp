@@ -288,9 +288,17 @@ void render_frames(const RenderOptions& options) {
     if (device) check_validation(*device);
 }
 
+/// A word that is neither a file nor looks like one may have been meant for a command.
+void tell_of_commands(const fs::path& scene) {
+    std::error_code ignored;
+    if (scene.empty() || scene != scene.filename() || scene.has_extension() || fs::exists(scene, ignored)) return;
+    throw Error(ExitCode::no_input, fmt::format("{}: no such file, nor a command (see vkcppm --help)", scene.string()));
+}
+
 }  // namespace
 
 void execute(const RenderOptions& options) {
+    tell_of_commands(options.scene.file);
     catch_interrupts();
     if (options.frames) return render_frames(options);
     const bool keeps_elsewhere = options.resume && !is_same_file(*options.resume, *options.checkpoint);

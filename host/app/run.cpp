@@ -2,12 +2,14 @@
 
 #include <csignal>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
 #include <type_traits>
 #include <variant>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include "app/commands.h"
@@ -51,6 +53,8 @@ int run(int argc, const char* const* argv) {
         return int(std::visit(carry_out, parse_options(argc, argv)));
     } catch (const Error& error) {
         return fail(error.code(), error.what());
+    } catch (const std::filesystem::filesystem_error& error) {  // such as a current folder that has been removed
+        return fail(ExitCode::no_input, fmt::format("{}: {}", error.path1().string(), error.code().message()));
     } catch (const std::bad_alloc&) {
         return fail(ExitCode::internal, "out of memory");
     } catch (const std::exception& error) {

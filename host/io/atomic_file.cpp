@@ -10,6 +10,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "core/error.h"
@@ -24,12 +25,25 @@ namespace {
 
 [[noreturn]] void fail_with_errno(const fs::path& file) { fail(file, std::strerror(errno)); }
 
-/// The file that a rename would replace: `file`, or what it links to. Throws where that is no file one may replace.
-fs::path replaceable(const fs::path& file) {
-    if (!file.has_filename()) fail(file, "it names no file");
+/// Whether bytes run through it and are gone, as through /dev/null or a named pipe: there is nothing to replace.
+bool is_stream(const fs::path& file) {
     std::error_code missing;
     const fs::file_status status = fs::status(file, missing);
-    if (!fs::exists(status)) return file;
+    return fs::is_character_file(status) || fs::is_fifo(status);
+}
+
+/// The file that a rename would replace: `file`, or what it links to, be that there or not. Throws where that is no
+/// file one may replace.
+fs::path replaceable(const fs::path& file) {
+    if (!file.has_filename()) fail(file, "it names no file");
+    std::error_code error;
+    const fs::file_status status = fs::status(file, error);
+    if (!fs::exists(status)) {
+        if (!fs::is_symlink(fs::symlink_status(file, error))) return file;
+        fs::path target = fs::weakly_canonical(file.parent_path() / fs::read_symlink(file), error);
+        if (error || fs::is_symlink(fs::symlink_status(target, error))) fail(file, "it is a link that leads nowhere");
+        return target;
+    }
     if (!fs::is_regular_file(status)) {
         fail(file, fs::is_directory(status) ? "it is a folder" : "it is not a regular file");
     }
@@ -48,6 +62,18 @@ void write_all(int descriptor, std::string_view bytes, const fs::path& file) {
     }
 }
 
+/// Closes a descriptor at the end of its scope.
+class Closed {
+public:
+    explicit Closed(int descriptor) : descriptor_(descriptor) {}
+    Closed(const Closed&) = delete;
+    Closed& operator=(const Closed&) = delete;
+    ~Closed() { ::close(descriptor_); }
+
+private:
+    int descriptor_;
+};
+
 /// An open temporary file beside its target; removed on destruction unless committed.
 class Part {
 public:
@@ -59,6 +85,9 @@ public:
         part_ = target_.parent_path() / (name + suffix);
         descriptor_ = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
         if (descriptor_ < 0) fail_with_errno(file_);
+        // Who could read the old file can read the new one, and nobody else.
+        struct stat old = {};
+        if (::stat(target_.c_str(), &old) == 0) ::fchmod(descriptor_, old.st_mode & 0777);
     }
     Part(const Part&) = delete;
     Part& operator=(const Part&) = delete;
@@ -97,13 +126,25 @@ void write_file(const fs::path& file, std::initializer_list<std::string_view> pa
         for (const std::string_view bytes : parts) write_all(STDOUT_FILENO, bytes, file);
         return;
     }
+    if (is_stream(file)) {
+        const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
+        if (descriptor < 0) fail_with_errno(file);
+        const Closed closed(descriptor);
+        for (const std::string_view bytes : parts) write_all(descriptor, bytes, file);
+        return;
+    }
     Part part(file);
     for (const std::string_view bytes : parts) part.write(bytes);
     part.commit();
 }
 
 void check_writable(const fs::path& file) {
-    if (!is_standard_output(file)) Part part(file);
+    if (is_standard_output(file)) return;
+    if (!is_stream(file)) {
+        Part part(file);
+    } else if (::access(file.c_str(), W_OK) != 0) {  // to open a pipe would wait for its reader
+        fail_with_errno(file);
+    }
 }
 
 }  // namespace vkcppm

@@ -12,7 +12,8 @@ namespace vkcppm {
 bool is_standard_output(const std::filesystem::path& file);
 
 /// Writes `bytes` to a temporary file in the same folder and renames it to `file`, so that `file` holds either what it
-/// held before or all of `bytes`. A symbolic link stays a link: what it points to is replaced.
+/// held before or all of `bytes`. A symbolic link stays a link: what it points to is replaced, and keeps who may read
+/// and write it. Bytes for a device such as /dev/null, or for a named pipe, are written to it as they are.
 /// Throws Error(cannot_write) with the file and the reason, after removing the temporary file.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 

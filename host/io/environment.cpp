@@ -14,6 +14,7 @@
 #include "core/fnv1a.h"
 #include "io/exr.h"
 #include "io/hdr.h"
+#include "io/input_file.h"
 
 namespace vkcppm {
 namespace fs = std::filesystem;
@@ -23,7 +24,7 @@ constexpr std::uintmax_t most_bytes = std::uintmax_t(1) << 30;  // 128 a pixel: 
 
 std::vector<std::uint8_t> read_bytes(const fs::path& file) {
     std::error_code error;
-    if (!fs::is_regular_file(file, error)) throw Error(ExitCode::no_input, file.string() + ": no such file");
+    require_file(file);
     const std::uintmax_t size = fs::file_size(file, error);
     if (!error && size > most_bytes) {
         throw Error(ExitCode::bad_scene,

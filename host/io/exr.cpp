@@ -18,10 +18,13 @@
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 #include <fmt/format.h>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 #include "core/error.h"
 #include "io/atomic_file.h"
 #include "io/exr_header.h"
+#include "io/input_file.h"
 
 namespace vkcppm {
 namespace fs = std::filesystem;
@@ -38,11 +41,6 @@ Imath::half to_half(float value) {
 
 [[noreturn]] void fail_to_read(const fs::path& file, const std::string& reason) {
     throw Error(ExitCode::bad_scene, file.string() + ": cannot read this EXR picture: " + reason);
-}
-
-void require_file(const fs::path& file) {
-    std::error_code ignored;
-    if (!fs::is_regular_file(file, ignored)) throw Error(ExitCode::no_input, file.string() + ": no such file");
 }
 
 std::int64_t width(const Imath::Box2i& window) { return std::int64_t(window.max.x) - window.min.x + 1; }
@@ -70,12 +68,14 @@ std::array<std::string, 3> rgb_channels(const Imf::ChannelList& channels, const 
         fail_to_read(file, fmt::format("it has {} layers of R, G and B ('{}', '{}', ...), one is read", layers.size(),
                                        layers[0], layers[1]));
     }
+    // Beside RY and BY, chroma, Y alone would show a colour picture in grey.
+    if (channels.findChannel("Y") && !channels.findChannel("RY") && !channels.findChannel("R")) return {"Y", "Y", "Y"};
     for (const char* name : {"R", "G", "B"}) {
-        // Beside RY and BY, chroma, Y alone would show a colour picture in grey.
-        const bool is_grey = channels.findChannel("Y") && !channels.findChannel("RY") && !channels.findChannel("R");
-        if (!channels.findChannel(name) && !is_grey) fail_to_read(file, std::string("it has no channel ") + name);
+        if (channels.findChannel(name)) continue;
+        const std::string one = channels.begin() == channels.end() ? "" : channels.begin().name();
+        fail_to_read(file, fmt::format("it has no channel {} in its first part, but '{}'", name, one.substr(0, 40)));
     }
-    return {"Y", "Y", "Y"};
+    return {"R", "G", "B"};
 }
 
 Extent extent_of(const Imath::Box2i& window) { return {std::uint32_t(width(window)), std::uint32_t(height(window))}; }
@@ -115,6 +115,46 @@ ExrChannels read_channels(const fs::path& file, std::string_view prefix) {
     return channels;
 }
 
+glm::dmat3 rgb_to_xyz(const Imf::Chromaticities& primaries) {
+    glm::dmat3 columns;
+    const auto xyz = [](const Imath::V2f& at) { return glm::dvec3(at.x, at.y, 1.0 - at.x - at.y) / double(at.y); };
+    columns[0] = xyz(primaries.red);
+    columns[1] = xyz(primaries.green);
+    columns[2] = xyz(primaries.blue);
+    const glm::dvec3 scale = glm::inverse(columns) * xyz(primaries.white);
+    return {columns[0] * scale.r, columns[1] * scale.g, columns[2] * scale.b};
+}
+
+/// To linear Rec. 709 from such primaries, white to white by Bradford's cones, as OpenEXR does for ACES (ImfAcesFile).
+glm::dmat3 to_rec709(const Imf::Chromaticities& primaries) {
+    const glm::dmat3 cones =
+        glm::transpose(glm::dmat3(0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296));
+    const glm::dmat3 from = rgb_to_xyz(primaries), to = rgb_to_xyz(Imf::Chromaticities());
+    const glm::dvec3 white(1.0);
+    const glm::dvec3 ratio = (cones * (to * white)) / (cones * (from * white));
+    const glm::dmat3 adapted = glm::inverse(cones) * glm::dmat3(ratio.r, 0, 0, 0, ratio.g, 0, 0, 0, ratio.b) * cones;
+    return glm::inverse(to) * adapted * from;
+}
+
+bool is_rec709(const Imf::Chromaticities& primaries) {
+    constexpr float rounding = 2e-3f;  // files state them to three places or so
+    const Imf::Chromaticities own;
+    const auto is_near = [](const Imath::V2f& a, const Imath::V2f& b) { return a.equalWithAbsError(b, rounding); };
+    return is_near(primaries.red, own.red) && is_near(primaries.green, own.green) &&
+           is_near(primaries.blue, own.blue) && is_near(primaries.white, own.white);
+}
+
+/// Brings what the file states in other primaries to those of Rec. 709.
+void convert(std::vector<glm::vec3>& pixels, const Imf::Header& header, const fs::path& file) {
+    if (!Imf::hasChromaticities(header) || is_rec709(Imf::chromaticities(header))) return;
+    const glm::dmat3 matrix = to_rec709(Imf::chromaticities(header));
+    if (!is_finite(glm::vec3(matrix * glm::dvec3(1.0))))
+        fail_to_read(file, "its chromaticities are none of a colour space");
+    for (glm::vec3& pixel : pixels) {
+        if (is_finite(pixel)) pixel = glm::vec3(matrix * glm::dvec3(pixel));
+    }
+}
+
 Image read_rgb(const fs::path& file) {
     Imf::InputFile input(file.c_str(), no_worker_threads);
     const Imath::Box2i data = input.header().dataWindow();
@@ -132,6 +172,8 @@ Image read_rgb(const fs::path& file) {
     input.readPixels(data.min.y, data.max.y);
     if (is_grey) {
         for (glm::vec3& pixel : pixels) pixel = glm::vec3(pixel.r);
+    } else {
+        convert(pixels, input.header(), file);
     }
 
     Image image{extent_of(display), in_window(pixels, data, display)};

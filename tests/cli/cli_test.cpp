@@ -409,7 +409,6 @@ TEST_F(Cli, EveryMisuseHasItsExitCodeAndItsLine) {
         {{"--device", "uuid:ffffffff-ffff-ffff-ffff-ffffffffffff"}, 69, {"ffffffff-ffff"}},
         {{"-o", "missing/out.exr"}, 73, {"missing/out.exr"}},
         {{"-o", "/proc/out.exr"}, 73, {"/proc/out.exr"}},
-        {{"-o", "/dev/null"}, 73, {"/dev/null"}},
         {{"-o", "."}, 73, {"folder"}},
         {{"-o", "./p.exr", "--png", "p.exr"}, 2, {"--png", "p.exr", "another output"}},
         {{"-o", "q.exr", "--stats", "./q.exr"}, 2, {"--stats", "q.exr", "another output"}},
@@ -491,6 +490,20 @@ TEST_F(Cli, APictureGoesIntoAPipeByADash) {
     // A file of that name is still one that can be named.
     expect_done(shell("\"$0\" \"$1\" -o ./-" + settings));
     EXPECT_TRUE(fs::exists(folder_ / "-"));
+}
+
+TEST_F(Cli, WhatIsNoFileOrNoFolderAnyLongerIsSaidInALine) {
+    const std::string settings = " --size 4x4 --iterations 1 --photons 16 --quiet";
+    expect_done(shell("\"$0\" \"$1\" -o /dev/null" + settings));
+    expect_failure(shell("\"$0\" \"$1\" -o /dev/full" + settings), 73, {"/dev/full: No space left on device"});
+    expect_failure(shell("cat \"$1\" | \"$0\" /dev/stdin -o a.exr" + settings), 66, {"/dev/stdin: not a regular file"});
+    expect_failure(shell("mkdir gone; cd gone; rmdir ../gone; \"$0\" s.gltf -o /dev/null" + settings), 66,
+                   {"No such file"});
+    expect_failure(shell("ln -s l.exr l.exr; \"$0\" \"$1\" -o l.exr" + settings), 73, {"cannot write l.exr"});
+    expect_failure(run({"help"}), 66, {"help: no such file, nor a command"});
+    expect_failure(run({scene("caustic"), "--environment", "."}), 66, {"it is a folder"});
+    write_exr(folder_ / "nan.exr", Image{{1, 1}, {glm::vec3(NAN)}});
+    expect_failure(run({"compare", "nan.exr", "nan.exr"}), 65, {"no pixel is finite in both"});
 }
 
 TEST_F(Cli, WarningsEndAStrictRunAndStandInTheStatistics) {

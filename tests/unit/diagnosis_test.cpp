@@ -268,7 +268,10 @@ TEST(Diagnosis, SaysThatThereIsNoLight) {
     scene.materials[1].emission = glm::vec3(0.0f);
     expect_told(scene, {"test.gltf: the scene: there is no light", "--environment"});
     scene.lights.push_back(point_light({5, 5, 5}, 0.0f));
-    expect_told(scene, {"no light"});
+    expect_told(scene, {"no light, it is black"});
+    scene.materials[1].unlit = true;
+    expect_told(scene, {"no light, all but what is unlit is black"});
+    scene.materials[1].unlit = false;
     scene.environment = Environment{{1, 1}, {glm::vec3(0.0f)}};
     expect_told(scene, {"no light"});
     scene.environment->radiance[0].g = 1.0f;

@@ -274,7 +274,7 @@ void expect_refusal(const fs::path& file, ExitCode code, const std::string& reas
 TEST(Exr, RefusesWhatIsNoPicture) {
     const test::TemporaryFolder folder;
     expect_refusal(folder / "missing.exr", ExitCode::no_input, "no such file");
-    expect_refusal(folder.path(), ExitCode::no_input, "no such file");
+    expect_refusal(folder.path(), ExitCode::no_input, "it is a folder");
     test::write_bytes(folder / "empty.exr", "");
     expect_refusal(folder / "empty.exr", ExitCode::bad_scene, "cannot read");
     test::write_bytes(folder / "text.exr", "this is no picture, however long its text may be\n");
@@ -287,7 +287,54 @@ TEST(Exr, RefusesWhatIsNoPicture) {
 TEST(Exr, NamesAMissingChannel) {
     const test::TemporaryFolder folder;
     write_planes(folder / "a.exr", box(0, 0, 3, 3), box(0, 0, 3, 3), {{"R", Imf::HALF, 1.0f}, {"B", Imf::HALF, 1.0f}});
-    expect_refusal(folder / "a.exr", ExitCode::bad_scene, "no channel G");
+    expect_refusal(folder / "a.exr", ExitCode::bad_scene, "no channel G in its first part, but 'B'");
+}
+
+/// Of whatever it reads as: (0.4, 0.5, 0.6) and white, in these primaries (x, y).
+std::array<glm::vec3, 2> read_in(const Imf::Chromaticities& primaries) {
+    const test::TemporaryFolder folder;
+    std::array<std::array<float, 2>, 3> planes = {{{0.4f, 1.0f}, {0.5f, 1.0f}, {0.6f, 1.0f}}};
+    Imf::Header header(2, 1);
+    Imf::addChromaticities(header, primaries);
+    Imf::FrameBuffer frame;
+    for (int c = 0; const char* name : {"R", "G", "B"}) {
+        header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+        frame.insert(name, Imf::Slice::Make(Imf::FLOAT, planes[c++].data(), header.dataWindow()));
+    }
+    {
+        Imf::OutputFile output((folder / "a.exr").c_str(), header);
+        output.setFrameBuffer(frame);
+        output.writePixels(1);
+    }
+    const Image image = read_exr(folder / "a.exr");
+    return {image.at(0, 0), image.at(1, 0)};
+}
+
+void expect_colour(const glm::vec3& got, const glm::vec3& want, float tolerance) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c], want[c], tolerance) << "channel " << c;
+}
+
+// Matrices as published: ITU-R BT.2087-0 (the inverse of its Table 2), and ACES AP1 to Rec. 709 of the ACES system,
+// which adapts by Bradford's cones from D60.
+TEST(Exr, BringsOtherPrimariesToRec709) {
+    using Imath::V2f;
+    const V2f d65(0.3127f, 0.3290f), aces_white(0.32168f, 0.33767f);
+    const auto rec2020 = read_in({V2f(0.708f, 0.292f), V2f(0.170f, 0.797f), V2f(0.131f, 0.046f), d65});
+    expect_colour(rec2020[0],
+                  {1.6605f * 0.4f - 0.5876f * 0.5f - 0.0728f * 0.6f, -0.1246f * 0.4f + 1.1329f * 0.5f - 0.0083f * 0.6f,
+                   -0.0182f * 0.4f - 0.1006f * 0.5f + 1.1187f * 0.6f},
+                  2e-4f);
+    expect_colour(rec2020[1], glm::vec3(1.0f), 1e-5f);
+    const auto ap1 = read_in({V2f(0.713f, 0.293f), V2f(0.165f, 0.830f), V2f(0.128f, 0.044f), aces_white});
+    expect_colour(
+        ap1[0],
+        {1.70505f * 0.4f - 0.62179f * 0.5f - 0.08326f * 0.6f, -0.13026f * 0.4f + 1.14080f * 0.5f - 0.01055f * 0.6f,
+         -0.02400f * 0.4f - 0.12897f * 0.5f + 1.15297f * 0.6f},
+        2e-4f);
+    expect_colour(ap1[1], glm::vec3(1.0f), 1e-5f);
+    const auto own = read_in({V2f(0.64f, 0.33f), V2f(0.30f, 0.60f), V2f(0.15f, 0.06f), d65});
+    EXPECT_EQ(own[0], glm::vec3(0.4f, 0.5f, 0.6f)) << "to the bit";
+    EXPECT_THROW(read_in({V2f(0, 0), V2f(0, 0), V2f(0, 0), V2f(0, 0)}), Error);
 }
 
 TEST(Exr, ReadsGreyAndTheOneLayerThatThereIs) {

@@ -91,6 +91,19 @@ TEST(Animation, CubicSplinesFollowTheirTangents) {
     expect_near(corner(builder, 2.0), {9, 0, 0});
 }
 
+TEST(Animation, TwoKeyFramesAtOneTimeAreAJump) {
+    for (const char* interpolation : {"LINEAR", "STEP"}) {
+        GltfBuilder builder = test::one_triangle();
+        animate(builder, "move", "translation", {0, 1, 1, 2}, {0, 0, 0, 0, 0, 0, 5, 0, 0, 5, 0, 0}, "VEC3", 3,
+                interpolation);
+        expect_near(corner(builder, 0.999), {1, 0, 0});
+        expect_near(corner(builder, 1), {6, 0, 0});
+        expect_near(corner(builder, 1.5), {6, 0, 0});
+        const std::string told = "animations[0].channels[0]: two key frames at one time";
+        EXPECT_EQ(test::warnings_with(load_at(builder, "move", 0), {told}), 1);
+    }
+}
+
 TEST(Animation, MovesMorphTargetsAndJoints) {
     GltfBuilder builder = test::one_triangle();
     json& primitive = builder.document["meshes"][0]["primitives"][0];
@@ -132,7 +145,9 @@ TEST(Animation, WhatIsNotThereIsToldWithWhatIs) {
     EXPECT_EQ(error->code(), ExitCode::usage);
     EXPECT_NE(std::string(error->what()).find("--animation 'run' is none of the animations"), std::string::npos);
     EXPECT_NE(std::string(error->what()).find("0 'walk'"), std::string::npos);
-    EXPECT_EQ(load_at(test::one_triangle(), "all", 0).triangles.size(), 1u);
+    const Scene still = load_at(test::one_triangle(), "all", 0);
+    EXPECT_EQ(still.triangles.size(), 1u);
+    EXPECT_EQ(test::warnings_with(still, {"animations: there are none, --animation all moves nothing"}), 1);
 }
 
 /// The one line about an animation that cannot be read.
@@ -144,8 +159,8 @@ std::string refusal(const GltfBuilder& builder) {
 
 TEST(Animation, WhatCannotBeIsRefused) {
     GltfBuilder falling = test::one_triangle();
-    animate(falling, "move", "translation", {1, 1}, {0, 0, 0, 1, 0, 0}, "VEC3", 3);
-    EXPECT_NE(refusal(falling).find("element 1 (input of animations[0].channels[0]) is 1"), std::string::npos);
+    animate(falling, "move", "translation", {1, 0}, {0, 0, 0, 1, 0, 0}, "VEC3", 3);
+    EXPECT_NE(refusal(falling).find("element 1 (input of animations[0].channels[0]) is 0"), std::string::npos);
     GltfBuilder few = test::one_triangle();
     animate(few, "move", "translation", {0, 1}, {0, 0, 0}, "VEC3", 3);
     EXPECT_NE(refusal(few).find("is 3 numbers; its key frames need 6"), std::string::npos) << refusal(few);

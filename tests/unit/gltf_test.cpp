@@ -717,5 +717,12 @@ TEST(Gltf, WarnsOnceOfAllUnknownExtensions) {
     EXPECT_EQ(warnings_with(scene, {"KHR_"}), 0) << all_warnings(scene);
 }
 
+TEST(Gltf, MetadataIsNothingToWarnOfOrToRefuse) {
+    GltfBuilder builder = test::one_triangle();
+    builder.document["extensionsUsed"] = {"KHR_xmp_json_ld", "EXT_structural_metadata", "KHR_physics_rigid_bodies"};
+    builder.document["extensionsRequired"] = {"KHR_xmp_json_ld"};
+    EXPECT_EQ(warnings_with(load(builder), {"extension"}), 0) << all_warnings(load(builder));
+}
+
 }  // namespace
 }  // namespace vkcppm

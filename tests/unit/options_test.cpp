@@ -255,6 +255,7 @@ TEST(Options, HelpNamesEveryOptionAndEstimator) {
         EXPECT_NE(help.find(name), std::string::npos) << name << " is not in\n" << help;
     }
     EXPECT_NE(std::get<TextOptions>(parse({"compare", "--help"})).text.find("REFERENCE"), std::string::npos);
+    EXPECT_EQ(std::get<RenderOptions>(parse({"--quiet", "--", "-odd.gltf"})).scene.file, "-odd.gltf");
     EXPECT_EQ(std::get<TextOptions>(parse({"--version"})).text.substr(0, 7), "vkcppm ");
 }
 
@@ -350,15 +351,20 @@ TEST(Options, RefuseEveryBadLineWithOptionValueAndRange) {
         {{"race", "s", "-o", "d", "--estimators", "cppm:beta"}, {"--estimators", "cppm:beta", "PARAMETER=VALUE"}},
         {{"race", "s", "-o", "d", "--estimators", "cppm:beta=x"}, {"--beta", "'x'", "finite"}},
         {{"race", "s", "-o", "d", "--estimator", "cppm"}, {"--estimator"}},
-        {{"s", "--bogus"}, {"--bogus"}},
-        {{"s", "--bogus=1"}, {"--bogus"}},
-        {{"s", "-x"}, {"-x"}},
-        {{"s", "--iter", "5"}, {"--iter"}},
+        {{"s", "--bogus"}, {"there is no option --bogus ("}},
+        {{"s", "--bogus=1"}, {"there is no option --bogus=1 ("}},
+        {{"s", "-x"}, {"there is no option -x ("}},
+        {{"-x"}, {"there is no option -x ("}},
+        {{"s", "--iter", "5"}, {"there is no option --iter: is it --iterations? ("}},
+        {{"s", "--photon", "5"}, {"there is no option --photon: is it --photons? ("}},
+        {{"s", "--estiamtor=sppm"}, {"there is no option --estiamtor=sppm: is it --estimator? ("}},
+        {{"render", "s"}, {"'s' has no place: SCENE is 'render' ("}},
+        {{"compare", "a", "b", "c"}, {"'c' has no place: IMAGE is 'a' ("}},
         {{"s", "--photons"}, {"--photons"}},
-        {{"s", "--photons", ""}, {"--photons", "''", "whole number", "4294967295"}},
-        {{"s", "--photons", "-1"}, {"--photons", "'-1'", "whole number", "4294967295"}},
+        {{"s", "--photons", ""}, {"--photons", "''", "whole number, such as"}},
+        {{"s", "--photons", "-1"}, {"--photons", "'-1'", "whole number, such as"}},
         {{"s", "--photons=-1"}, {"--photons", "'-1'"}},
-        {{"s", "--photons", "4294967296"}, {"--photons", "'4294967296'", "4294967295"}},
+        {{"s", "--photons", "4294967296"}, {"--photons", "'4294967296'", "below 2^32"}},
         {{"s", "--photons", "99999999999999999999999"}, {"--photons", "'99999999999999999999999'"}},
         {{"s", "--photons", "1.5"}, {"--photons", "'1.5'"}},
         {{"s", "--photons", "1e3"}, {"--photons", "'1e3'"}},
@@ -371,7 +377,7 @@ TEST(Options, RefuseEveryBadLineWithOptionValueAndRange) {
         {{"s", "--aperture", "wide"}, {"--aperture", "'wide'", "finite number"}},
         {{"s", "--focus-distance", "inf"}, {"--focus-distance", "'inf'", "finite number"}},
         {{"s", "--environment"}, {"--environment"}},
-        {{"s", "--photons", "1", "--photons", "2"}, {"--photons"}},
+        {{"s", "--photons", "1", "--photons", "2"}, {"--photons is given 2 times: '1', '2' ("}},
         {{"s", "--iterations", "-5"}, {"--iterations", "'-5'"}},
         {{"s", "--seed", "-1"}, {"--seed", "'-1'"}},
         {{"s", "--max-depth", "x"}, {"--max-depth", "'x'"}},
@@ -399,7 +405,7 @@ TEST(Options, RefuseEveryBadLineWithOptionValueAndRange) {
         {{"s", "--size", "-64x64"}, {"--size", "'-64x64'"}},
         {{"s", "--size", "64X64"}, {"--size", "'64X64'"}},
         {{"s", "--size", "4294967296x1"}, {"--size", "'4294967296x1'"}},
-        {{"s", "--exposure", "x", "--png", "p"}, {"--exposure", "'x'"}},
+        {{"s", "--exposure", "x", "--png", "p"}, {"--exposure", "'x'", "auto or a number"}},
         {{"s", "--exposure", "1"}, {"--exposure", "--png"}},
         {{"s", "--exposure", "129", "--png", "p"}, {"--exposure", "'129'", "auto", "128"}},
         {{"s", "--tone-map", "aces"}, {"--tone-map", "--png"}},

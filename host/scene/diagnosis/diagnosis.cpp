@@ -262,7 +262,9 @@ private:
         };
         if (std::ranges::any_of(scene_.triangles, emits, material)) return;
         if (!scene_.triangles.empty() && std::ranges::all_of(scene_.triangles, &Material::unlit, material)) return;
-        warnings_.add("there is no light, it is black: it needs a light, an emissiveFactor or --environment",
+        const bool has_unlit = std::ranges::any_of(scene_.triangles, &Material::unlit, material);
+        warnings_.add(fmt::format("there is no light, {} black: it needs a light, an emissiveFactor or --environment",
+                                  has_unlit ? "all but what is unlit is" : "it is"),
                       "the scene");
     }
 

@@ -25,7 +25,7 @@ struct Span {
     double seconds;  // that it lasts
 };
 
-/// times: [n >= 1] ascending.
+/// times: [n >= 1] not falling.
 Span span_at(const Values& times, double seconds) {
     const auto next = std::size_t(std::ranges::upper_bound(times, seconds) - times.begin());
     if (next == 0) return {0, 0, 0.0, 0.0};
@@ -55,14 +55,18 @@ class Channel {
 public:
     /// width: numbers of a key frame; 1 to 4 or, of weights, how many a mesh has.
     Channel(const GltfFile& file, GltfAccessors& accessors, const json& sampler, const std::string& object,
-            std::size_t width, bool is_weights)
+            std::size_t width, bool is_weights, Warnings& warnings)
         : width_(width), interpolation_(sampler.value("interpolation", "LINEAR")) {
         const int input = sampler["input"].get<int>(), output = sampler["output"].get<int>();
         times_ = accessors.numbers(input, 1, "input");
         for (std::size_t i = 0; i < times_.size(); ++i) {
-            if (std::isfinite(times_[i]) && (i == 0 || times_[i] > times_[i - 1])) continue;
+            if (std::isfinite(times_[i]) && (i == 0 || times_[i] >= times_[i - 1])) continue;
             bad_scene(file.name, fmt::format("accessors[{}] element {} (input of {})", input, i, object),
                       fmt::to_string(times_[i]), "the times must be finite and rise");
+        }
+        // Exporters that round times leave some: a jump.
+        if (std::ranges::adjacent_find(times_) != times_.end()) {
+            warnings.add("two key frames at one time, the later one holds from there on", object);
         }
         values_ = accessors.numbers(output, is_weights ? 1 : int(width), "output");
         const std::size_t wanted = times_.size() * width * (is_cubic() ? 3 : 1);
@@ -134,6 +138,7 @@ void pose_nodes(GltfFile& file, tinygltf::Model& model, GltfAccessors& accessors
     const json animations = file.document.value("animations", json::array());
     std::vector<std::size_t> chosen;
     if (animation == "all") {
+        if (animations.empty()) warnings.add("there are none, --animation all moves nothing", "animations");
         for (std::size_t i = 0; i < animations.size(); ++i) chosen.push_back(i);
     } else {
         chosen.push_back(choose("--animation", animation, animations, "animations", file.name));
@@ -161,7 +166,7 @@ void pose_nodes(GltfFile& file, tinygltf::Model& model, GltfAccessors& accessors
                 warnings.add("ignored, its node has no morph targets", object);
                 continue;
             }
-            const Channel channel(file, accessors, samplers[sampler], object, width, is_weights);
+            const Channel channel(file, accessors, samplers[sampler], object, width, is_weights, warnings);
             set(file, model, node, path, channel.at(seconds, path == "rotation"), warnings);
         }
     }

@@ -46,7 +46,8 @@ bool is_inside(const std::filesystem::path& path, const std::filesystem::path& r
 }  // namespace
 
 std::filesystem::path default_root(const std::filesystem::path& file) {
-    return std::filesystem::canonical(std::filesystem::absolute(file)).parent_path();
+    std::error_code error;  // of a pipe, which is no file, as read_bytes says
+    return std::filesystem::canonical(std::filesystem::absolute(file), error).parent_path();
 }
 
 std::optional<Bytes> read_uri(const std::string& uri, std::size_t limit, const std::string& object,

@@ -99,6 +99,24 @@ constexpr std::string_view supported_extensions[] = {
 #include "scene/material_extensions.h"
 };
 
+/// Those that change nothing of what is seen at a moment: metadata, sounds, physics, what is done with a file.
+constexpr std::string_view extensions_without_looks[] = {
+    "AGI_articulations",
+    "EXT_mesh_features",
+    "EXT_mesh_manifold",
+    "EXT_structural_metadata",
+    "FB_geometry_metadata",
+    "GODOT_single_root",
+    "KHR_audio_emitter",
+    "KHR_implicit_shapes",
+    "KHR_interactivity",
+    "KHR_node_hoverability",
+    "KHR_node_selectability",
+    "KHR_physics_rigid_bodies",
+    "KHR_xmp",
+    "KHR_xmp_json_ld",
+};
+
 constexpr const char* lights_pointer = "/extensions/KHR_lights_punctual/lights";
 
 constexpr Field fallback_fields[] = {{.name = "fallback", .kind = Kind::boolean}};
@@ -479,9 +497,9 @@ std::vector<std::string> unsupported_extensions(const json& document, std::strin
     for (const json& name : names) {
         if (!name.is_string()) bad_scene(file, member, json_text(name), "it must hold strings");
         const auto& text = name.get_ref<const std::string&>();
-        if (std::ranges::find(supported_extensions, text) == std::end(supported_extensions)) {
-            unsupported.push_back(json_text(name));
-        }
+        const bool is_supported = std::ranges::find(supported_extensions, text) != std::end(supported_extensions);
+        const auto found = std::ranges::find(extensions_without_looks, text);
+        if (!is_supported && found == std::end(extensions_without_looks)) unsupported.push_back(json_text(name));
     }
     return unsupported;
 }
