@@ -14,6 +14,7 @@
 #include <fmt/ranges.h>
 
 #include "app/record.h"
+#include "app/version.h"
 #include "core/error.h"
 #include "core/fnv1a.h"
 #include "io/atomic_file.h"

@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/record.h"
+#include "app/version.h"
 #include "core/fnv1a.h"
 #include "io/atomic_file.h"
 

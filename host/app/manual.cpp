@@ -11,7 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "app/options.h"
-#include "app/record.h"
+#include "app/version.h"
 #include "io/atomic_file.h"
 
 namespace vkcppm {

@@ -180,6 +180,22 @@ std::pair<std::string, double> parse_assignment(const std::string& option, const
 
 }  // namespace
 
+LiveAddress parse_live(const std::string& option, const std::string& text) {
+    // A host in brackets may have colons, as addresses of version 6 do.
+    const bool is_bracketed = text.starts_with('[');
+    const std::size_t end = is_bracketed ? text.find(']') : text.find(':');
+    const std::string host = text.substr(is_bracketed ? 1 : 0, is_bracketed ? end - 1 : end);
+    std::string_view rest = text;
+    rest.remove_prefix(end == std::string::npos ? text.size() : end + (is_bracketed ? 1 : 0));
+    std::uint16_t port = 14158;  // tev's own
+    const bool has_port = rest.starts_with(':');
+    if (has_port) rest.remove_prefix(1);
+    const bool is_open = is_bracketed && end == std::string::npos;
+    if (host.empty() || is_open || (has_port && !take_number(rest, port)) || !rest.empty() || port == 0)
+        refuse(option, text, "HOST:PORT, such as localhost:14158");
+    return {host, std::to_string(port)};
+}
+
 StopAt parse_stop_at(const std::string& option, const std::string& text) {
     const auto [name, value] = parse_assignment(option, text, "relmse_trimmed=0.0035");
     const StopAt result{&find_metric(option, name), value};

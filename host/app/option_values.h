@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "app/live.h"
 #include "core/display.h"
 #include "core/image.h"
 #include "core/metrics.h"
@@ -53,6 +54,7 @@ Bound parse_bound(const std::string& option, const std::string& text);          
 Extent parse_size(const std::string& option, const std::string& text);                     // 512x384
 double parse_moment(const std::string& option, const std::string& text);                   // the same, of any sign
 double parse_seconds(const std::string& option, const std::string& text);     // of 90, 90s, 2m, 1.5h or 500ms; > 0
+LiveAddress parse_live(const std::string& option, const std::string& text);   // HOST, HOST:PORT, [HOST] or [HOST]:PORT
 StopAt parse_stop_at(const std::string& option, const std::string& text);     // relmse_trimmed=0.0035
 Target parse_target(const std::string& option, const std::string& text);      // relmse=0.001, noise=2%
 double parse_confidence(const std::string& option, const std::string& text);  // 90 or 90 % as 0.9

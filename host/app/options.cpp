@@ -15,6 +15,7 @@
 #include <fmt/ranges.h>
 
 #include "app/option_values.h"
+#include "app/version.h"
 #include "core/error.h"
 #include "io/atomic_file.h"
 #include "render/estimators.h"
@@ -241,7 +242,8 @@ std::string quoted(const std::string& word) {
 
 void declare(CLI::App& app, RenderOptions& options) {
     app.footer(footer);
-    app.set_version_flag("--version", "vkcppm " VKCPPM_VERSION);
+    app.set_version_flag("--version", commit().empty() ? fmt::format("vkcppm {}", version())
+                                                       : fmt::format("vkcppm {} ({})", version(), commit()));
     add_scene(app, options.scene);
     app.add_option("-o", options.output, "The picture, linear float EXR (default: the scene's name with .exr, here)")
         ->type_name("OUT.exr");
@@ -283,13 +285,17 @@ void declare(CLI::App& app, RenderOptions& options) {
     CLI::Option* snapshot =
         add(app, "--snapshot", "TIME", options.snapshot, parse_seconds,
             "Write the picture, and the PNG, on the way as well: each time that so much rendering time has passed");
+    CLI::Option* live =
+        add(app, "--live", "HOST:PORT", options.live, parse_live,
+            "Show the picture on its way in tev, which listens there (tev's own port: 14158): once a second of\n"
+            "rendering. A viewer that is not there costs a warning");
     CLI::Option* frames =
         add(app, "--frames", "FIRST..LAST", options.frames, parse_frames,
             "Render these frames of the animation, frame i at i / fps seconds, each into files of its own: -o, --png\n"
             "and --stats have a place for its number, as out_%04d.exr (default: the scene's name with _%04d.exr).\n"
             "A frame whose files are there and are of this render is skipped");
     frames->needs("--animation")->excludes("--at")->excludes("--checkpoint")->excludes("--resume");
-    frames->excludes("--reference")->excludes("--target")->excludes(snapshot);
+    frames->excludes("--reference")->excludes("--target")->excludes(snapshot)->excludes(live);
     add(app, "--fps", "X", options.fps, parse_rate, fmt::format("Frames of a second (default: {:g})", options.fps))
         ->needs(frames);
     add_picture(app, options.settings);

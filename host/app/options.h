@@ -59,6 +59,7 @@ struct RenderOptions {
     std::optional<std::filesystem::path> checkpoint;  // where checkpoints go: `resume` where no other is named
     double checkpoint_every = 60.0;                   // s
     std::optional<double> snapshot;                   // s of rendering between two pictures that are written on the way
+    std::optional<LiveAddress> live;                  // of a viewer that is sent the picture on its way
     std::optional<FrameRange> frames;                 // of scene.animation; the files are patterns then
     double fps = 24.0;                                // of the frames
     bool hash = false;                                // print the hash of every pass

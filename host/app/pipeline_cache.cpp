@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "app/record.h"
+#include "app/version.h"
 #include "core/fnv1a.h"
 #include "io/atomic_file.h"
 

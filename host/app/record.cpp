@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/measures.h"
+#include "app/version.h"
 #include "core/fnv1a.h"
 
 namespace vkcppm {
@@ -37,8 +38,6 @@ Json chosen(const SceneOptions& options) {
 }
 
 }  // namespace
-
-std::string version() { return VKCPPM_VERSION; }
 
 std::string json_text(const Json& json, int indent) {
     return json.dump(indent, ' ', false, Json::error_handler_t::replace);
@@ -99,6 +98,7 @@ ExrAttributes exr_attributes(const SceneOptions& options, const Scene& scene, co
         json.update(estimate_json(*rendering.estimate));
         json["batches"] = ERROR_GROUPS;  // that StdErr is the spread of
     }
+    if (!commit().empty()) json["commit"] = commit();
     return attributes_of(std::move(json), options, scene, rendering.report);
 }
 
@@ -167,6 +167,7 @@ std::string stats_json(const RenderOptions& options, const Scene& scene, const R
                        const Display& display) {
     Json json;
     json["version"] = version();
+    if (!commit().empty()) json["commit"] = commit();
     json["scene"] = scene_json(options.scene, scene);
     json["settings"] = settings_json(rendering.settings);
     json["warnings"] = warnings_json(scene, rendering.warnings);

@@ -48,11 +48,8 @@ ExrAttributes attributes_of(nlohmann::ordered_json json, const SceneOptions& opt
 /// JSON as text; invalid UTF-8, which a file's names may hold, is replaced. indent: -1 for a single line.
 std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
 
-/// The version of the program.
-std::string version();
-
 /// The attributes of a rendered EXR: all settings as resolved and what was rendered. Nothing that differs between two
-/// runs of one seed on one device.
+/// runs of one seed on one device by one build.
 ExrAttributes exr_attributes(const SceneOptions& options, const Scene& scene, const Rendering& rendering);
 
 /// The text of --stats: a JSON object with version, scene, settings and the report; with a reference also its file,

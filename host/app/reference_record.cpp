@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/record.h"
+#include "app/version.h"
 #include "core/blocks.h"
 
 namespace vkcppm {
@@ -52,6 +53,7 @@ float told_error(const glm::vec3& error) { return rounded_error(std::sqrt(glm::d
 ExrAttributes reference_attributes(const ReferenceOptions& options, const Scene& scene, const Reference& reference) {
     Json json = reference_settings_json(reference.settings);
     json.update(error_json(reference));
+    if (!commit().empty()) json["commit"] = commit();
     return attributes_of(std::move(json), options.scene, scene, reference.report);
 }
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <new>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "app/display.h"
 #include "app/frames.h"
 #include "app/interrupt.h"
+#include "app/live.h"
 #include "app/load.h"
 #include "app/outputs.h"
 #include "app/pipeline_cache.h"
@@ -34,6 +36,8 @@
 namespace vkcppm {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr double live_every = 1.0;  // s of rendering between two pictures that a viewer is sent
 
 /// What the render is measured against; absent without a reference. The picture will have that size.
 std::optional<Measuring> read_measuring(const RenderOptions& options, const Extent& size) {
@@ -159,10 +163,19 @@ void write_snapshot(const RenderOptions& options, const Scene& scene, const Rend
 Rendering render_with_progress(const Scene& scene, const RenderOptions& options, const Measuring* measuring,
                                const Checkpointing& checkpointing, Device& device) {
     ProgressLine line(stderr, ::isatty(STDERR_FILENO) == 1, options.settings.seconds);
+    std::optional<LiveView> view;
+    if (options.live) view.emplace(*options.live, options.output.string());
     Snapshots snapshots;
-    if (options.snapshot) {
-        snapshots.every = *options.snapshot;
-        snapshots.show = [&](const Rendering& so_far) { write_snapshot(options, scene, so_far); };
+    double written_at = checkpointing.from ? checkpointing.from->report.wall_seconds : 0.0;
+    if (options.snapshot || view) {
+        snapshots.every = options.snapshot.value_or(live_every);
+        if (view) snapshots.every = std::min(snapshots.every, live_every);
+        snapshots.show = [&](const Rendering& so_far) {
+            if (view) view->show(so_far.image);
+            if (!options.snapshot || so_far.report.wall_seconds - written_at < *options.snapshot) return;
+            written_at = so_far.report.wall_seconds;
+            write_snapshot(options, scene, so_far);
+        };
     }
     const Rendering rendering = render(
         scene, options.settings, device,
@@ -172,6 +185,7 @@ Rendering render_with_progress(const Scene& scene, const RenderOptions& options,
         },
         measuring, checkpointing, options.hash ? print_hash : OnPassHash(), snapshots,
         options.target ? &*options.target : nullptr);
+    if (view) view->show(rendering.image);
     if (!options.quiet) {
         const Report& report = rendering.report;
         Progress progress{report.iterations, rendering.settings.iterations, report.wall_seconds};

@@ -23,6 +23,7 @@
 #include "support/files/files.h"
 #include "support/files/process.h"
 #include "support/files/temporary_folder.h"
+#include "support/files/viewer.h"
 #include "support/hostile/faults.h"
 #include "support/scenes/everything.h"
 #include "support/scenes/scenes.h"
@@ -490,6 +491,26 @@ TEST_F(Cli, APictureGoesIntoAPipeByADash) {
     // A file of that name is still one that can be named.
     expect_done(shell("\"$0\" \"$1\" -o ./-" + settings));
     EXPECT_TRUE(fs::exists(folder_ / "-"));
+}
+
+TEST_F(Cli, APictureIsShownOnItsWay) {
+    Words words{scene("caustic"), "--size", "150x90", "--iterations", "8", "--photons", "2000", "--quiet"};
+    const auto with = [&](const Words& more) {
+        Words all = words;
+        all.insert(all.end(), more.begin(), more.end());
+        return run(all);
+    };
+    Viewer viewer;
+    expect_done(with({"-o", "a.exr", "--live", "127.0.0.1:" + viewer.port()}));
+    viewer.stop();
+    EXPECT_EQ(viewer.fault, "");
+    EXPECT_EQ(viewer.name, "a.exr");
+    EXPECT_EQ(viewer.image.rgb, read_exr(folder_ / "a.exr").rgb) << "the last picture is that of the file";
+    const auto alone = with({"-o", "b.exr", "--live", "127.0.0.1:" + viewer.port()});
+    EXPECT_EQ(alone.exit_code, 0);
+    EXPECT_EQ(lines_of(alone.err).size(), 1u) << alone.err;
+    EXPECT_TRUE(contains(alone.err, "warning: --live 127.0.0.1:")) << alone.err;
+    EXPECT_EQ(read_exr(folder_ / "b.exr").rgb, viewer.image.rgb);
 }
 
 TEST_F(Cli, WhatIsNoFileOrNoFolderAnyLongerIsSaidInALine) {

@@ -6,6 +6,7 @@
 
 #include "app/measures.h"
 #include "app/record.h"
+#include "app/version.h"
 #include "core/blocks.h"
 
 namespace vkcppm {

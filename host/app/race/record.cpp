@@ -9,6 +9,7 @@
 #include "app/measures.h"
 #include "app/page/html.h"
 #include "app/record.h"
+#include "app/version.h"
 #include "core/display.h"
 #include "study/seeds.h"
 
