@@ -433,6 +433,13 @@ void declare(CLI::App& app, RaceOptions& options) {
     add(app, "--make-reference", "TIME", options.make_reference, parse_seconds,
         "Make it first, in this time, as vkcppm reference does, with a seed that does not race: DIR/reference.exr")
         ->excludes("--reference");
+    app.add_flag("--checkpoint", options.checkpoint,
+                 "Keep the state of every entrant and seed in DIR/states, from which --resume goes on");
+    app.add_option("--resume", options.resume,
+                   "Go on from the states of the race in this folder, with more time, iterations or seeds; what else\n"
+                   "is set must be the same. New states are kept in DIR, which may be that folder")
+        ->type_name("DIR")
+        ->excludes("--make-reference");
     add_display(app, options.display, "pictures");
     add_picture(app, settings);
     add_settings(app, settings, {Kind::parameter});
@@ -441,6 +448,7 @@ void declare(CLI::App& app, RaceOptions& options) {
 }
 
 void finish(const CLI::App& app, const Words& words, RaceOptions& options) {
+    options.checkpoint = options.checkpoint || options.resume;
     if (options.race.seeds == 0 || options.race.seeds > most_seeds)
         refuse("--seeds", std::to_string(options.race.seeds), fmt::format("a number from 1 to {}", most_seeds));
     Settings settings = options.race.entrants.front().settings;

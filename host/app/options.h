@@ -106,6 +106,8 @@ struct RaceOptions {
     std::optional<std::filesystem::path> reference;  // EXR; by default references/NAME.exr beside the scene
     std::optional<double> make_reference;            // s: one is made for the race, in at most that time
     std::filesystem::path folder;                    // of all that is written
+    bool checkpoint = false;                         // keeps the states of entrants there
+    std::optional<std::filesystem::path> resume;     // folder of a race that kept its states; then checkpoint
     DisplayOptions display;                          // for the pictures
     Device::Options device;
     bool quiet = false;

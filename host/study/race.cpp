@@ -31,10 +31,12 @@ void add_squared_error(std::vector<double>& sums, const Image& image, const Imag
 /// An entrant in the seed that runs.
 class Lane {
 public:
-    /// Starts a curve in `run`. Throws Error(out_of_device_memory) with the entrant.
-    Lane(const SceneOnDevice& on_device, const Scene& scene, RaceRun& run, std::uint32_t seed)
-        : run_(run), settings_(run.entrant.settings) {
+    /// Starts a curve in `run`, or goes on with one. Throws Error(out_of_device_memory) with the entrant.
+    Lane(const SceneOnDevice& on_device, const Scene& scene, RaceRun& run, std::uint32_t seed, const RaceStates& states)
+        : run_(run), settings_(run.entrant.settings), states_(states) {
         settings_.seed = seed;
+        std::optional<Checkpoint> from;
+        if (states_.find) from = states_.find({run.entrant.name, settings_});
         try {
             integrator_ = std::make_unique<Integrator>(on_device, camera_of(settings_, scene), settings_);
         } catch (const Error& error) {
@@ -46,7 +48,8 @@ public:
                             "bytes",
                             run.entrant.name, error.what(), device.allocated_bytes(), device.info().memory_bytes));
         }
-        run_.curves.emplace_back();
+        if (from) integrator_->restore(from->report, from->state);
+        run_.curves.push_back(from ? std::move(from->curve) : Curve());
     }
 
     bool finished() const {
@@ -75,12 +78,20 @@ public:
     /// Adds its end to the run.
     void end(const Image& reference) {
         take_snapshot(reference);
+        keep();
         integrator_->fill(run_.reports.emplace_back());
         Image image = integrator_->resolve();
         add_squared_error(run_.squared_error, image, reference);
         if (run_.curves.size() > 1) return;
         run_.image = std::move(image);
         run_.radius = integrator_->radii();
+    }
+
+    void keep() const {
+        if (!states_.keep || !began()) return;
+        Checkpoint state{{}, run_.curves.back(), integrator_->save()};
+        integrator_->fill(state.report);
+        states_.keep({run_.entrant.name, settings_}, state);
     }
 
     std::uint64_t invalid() const { return integrator_->invalid(); }
@@ -94,6 +105,7 @@ private:
 
     RaceRun& run_;
     Settings settings_;
+    const RaceStates& states_;
     std::unique_ptr<Integrator> integrator_;
 };
 
@@ -126,7 +138,7 @@ RaceSettings resolve_race(const RaceSettings& race, const Scene& scene) {
 }
 
 RaceResult run_race(const Scene& scene, const RaceSettings& race, const Image& reference, Device& device,
-                    const KeepRacing& keep_racing) {
+                    const KeepRacing& keep_racing, const RaceStates& states) {
     assert(!race.entrants.empty() && race.seeds > 0);
     RaceResult result;
     for (const Entrant& entrant : race.entrants) result.runs.push_back({entrant, {}, {}, {}, {}, {}});
@@ -147,7 +159,7 @@ RaceResult run_race(const Scene& scene, const RaceSettings& race, const Image& r
     for (std::uint32_t s = 0; s < race.seeds && !result.interrupted; ++s) {
         const std::uint32_t seed = race.entrants.front().settings.seed + s;
         std::vector<Lane> lanes;
-        for (RaceRun& run : result.runs) lanes.emplace_back(on_device, scene, run, seed);
+        for (RaceRun& run : result.runs) lanes.emplace_back(on_device, scene, run, seed, states);
         const auto progress = [&] {
             double done = s;
             for (const Lane& lane : lanes) done += lane.done() / double(lanes.size());
@@ -160,6 +172,7 @@ RaceResult run_race(const Scene& scene, const RaceSettings& race, const Image& r
             if (result.interrupted && (s > 0 || std::ranges::all_of(lanes, &Lane::began))) break;
         }
         if (next_lane(lanes) && s > 0) {
+            for (const Lane& lane : lanes) lane.keep();
             for (RaceRun& run : result.runs) run.curves.pop_back();
             break;
         }

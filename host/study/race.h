@@ -10,6 +10,7 @@
 
 #include "core/curve.h"
 #include "core/image.h"
+#include "render/checkpoint.h"
 #include "render/report.h"
 #include "render/settings.h"
 #include "scene/scene.h"
@@ -63,6 +64,14 @@ struct RaceProgress {
 /// False ends the race after the submission that is done.
 using KeepRacing = std::function<bool(const RaceProgress&)>;
 
+/// Where the states of entrants are kept between races, by the entrant, whose settings then have the seed and the
+/// number of light paths. find: what was kept of it, from which it goes on; nothing begins. keep: at the end of a seed,
+/// also of one that is cut short.
+struct RaceStates {
+    std::function<std::optional<Checkpoint>(const Entrant&)> find = {};
+    std::function<void(const Entrant&, const Checkpoint&)> keep = {};
+};
+
 /// The settings of every entrant as resolve_settings has them. Throws Error(usage), with the entrant's name, where one
 /// is out of range, and where two entrants have one name.
 RaceSettings resolve_race(const RaceSettings& race, const Scene& scene);
@@ -70,9 +79,10 @@ RaceSettings resolve_race(const RaceSettings& race, const Scene& scene);
 /// Runs the race: seeds one after another, entrants in turn in submissions of a fraction of a second, the one whose
 /// clock (without a time limit: whose iterations) is behind first, so that what disturbs the machine disturbs all
 /// alike. A race that is cut short keeps the seeds that are complete, or what there is of the first.
+/// With `states` it goes on from where others ended, seed by seed: iterations have the bits that they would have had.
 /// `race` as resolve_race returns it; `reference` [size of the entrants]. Throws Error(usage) where the sizes differ,
 /// Error(out_of_device_memory) with the entrant where not all fit the device together, and what Integrator throws.
 RaceResult run_race(const Scene& scene, const RaceSettings& race, const Image& reference, Device& device,
-                    const KeepRacing& keep_racing);
+                    const KeepRacing& keep_racing, const RaceStates& states = {});
 
 }  // namespace vkcppm

@@ -87,6 +87,32 @@ TEST_F(RaceCli, TwiceGivesTheSameCurvesAndPictures) {
     EXPECT_TRUE(contains(told["command"], "vkcppm race ")) << told["command"];
 }
 
+TEST_F(RaceCli, GoesOnWithMoreIterationsAndSeeds) {
+    make_reference();
+    const auto with = [&](const std::string& out, Words more) {
+        Words words{"race", scene("torus"), "-o", out, "--photons", "1000", "--quiet", "--reference", "ref.exr"};
+        words.insert(words.end(), {"--estimators", "cppm,sppm"});
+        words.insert(words.end(), more.begin(), more.end());
+        return run(words);
+    };
+    expect_done(with("a", {"--iterations", "3", "--checkpoint"}));
+    EXPECT_EQ(test::names_in(folder_ / "a/states"), (std::set<std::string>{"cppm-1.ckpt", "sppm-1.ckpt"}));
+    expect_done(with("b", {"--iterations", "5", "--seeds", "2", "--resume", "a"}));
+    expect_done(with("whole", {"--iterations", "5", "--seeds", "2"}));
+    const auto ends = [&](const std::string& folder) {
+        std::vector<std::string> lines = curves(folder + "/curves.csv");
+        std::erase_if(lines, [](const std::string& line) { return !contains(line, ",5,"); });
+        return lines;
+    };
+    EXPECT_EQ(ends("whole").size(), 4u);
+    EXPECT_EQ(ends("b"), ends("whole"));
+    EXPECT_EQ(test::names_in(folder_ / "b/states").size(), 4u);
+    for (const char* picture : {"cppm.exr", "sppm.exr", "winner.png"})
+        EXPECT_EQ(test::read_bytes(folder_ / "b" / picture), test::read_bytes(folder_ / "whole" / picture)) << picture;
+    expect_failure(with("c", {"--iterations", "5", "--resume", "a", "--knn", "12"}), 2, {"another render", "knn: 10"});
+    expect_failure(with("c", {"--iterations", "5", "--resume", "whole"}), 66, {"no states in whole", "--checkpoint"});
+}
+
 TEST_F(RaceCli, ThePictureIsThatOfARenderAndTheErrorThatOfCompare) {
     make_reference();
     ASSERT_EQ(race("out", {"--reference", "ref.exr", "--estimators", "appm,cppm"}).exit_code, 0);

@@ -3,9 +3,12 @@
 #include "study/race.h"
 
 #include <algorithm>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "core/metrics.h"
@@ -121,6 +124,43 @@ TEST_F(Race, TwiceGivesTheSameCurvesToTheLastBit) {
         }
         EXPECT_NE(a.runs[e].curves[0].back().error.mse.all, a.runs[e].curves[1].back().error.mse.all) << "two seeds";
         EXPECT_EQ(a.runs[e].squared_error, b.runs[e].squared_error);
+    }
+}
+
+// What was kept of a shorter race with one seed becomes a longer one with two.
+TEST_F(Race, GoesOnFromWhatWasKeptToTheLastBit) {
+    const Scene scene = test::project_scene("torus");
+    std::map<std::string, Checkpoint> kept;
+    const auto name = [](const Entrant& entrant) { return fmt::format("{} {}", entrant.name, entrant.settings.seed); };
+    RaceStates states;
+    states.keep = [&](const Entrant& entrant, const Checkpoint& state) { kept[name(entrant)] = state; };
+    RaceSettings race = race_of({"cppm", "sppm"});
+    run_race(scene, resolve_race(race, scene), black(), test::device(), go_on, states);
+    EXPECT_EQ(kept.size(), 2u);
+    for (Entrant& entrant : race.entrants) entrant.settings.iterations = 9;
+    race.seeds = 2;
+    const RaceResult whole = run_race(scene, resolve_race(race, scene), black(), test::device(), go_on);
+    int found = 0;
+    states.find = [&](const Entrant& entrant) -> std::optional<Checkpoint> {
+        if (!kept.contains(name(entrant))) return std::nullopt;
+        ++found;
+        return kept[name(entrant)];
+    };
+    const RaceResult result = run_race(scene, resolve_race(race, scene), black(), test::device(), go_on, states);
+    EXPECT_EQ(found, 2) << "the second seed begins";
+    EXPECT_EQ(kept.size(), 4u);
+    EXPECT_EQ(result.seeds, (std::vector<std::uint32_t>{3, 4}));
+    for (std::size_t e = 0; e < result.runs.size(); ++e) {
+        const RaceRun &run = result.runs[e], &same = whole.runs[e];
+        test::expect_same_picture(run.image, same.image, run.entrant.name);
+        EXPECT_EQ(run.radius, same.radius);
+        EXPECT_EQ(run.squared_error, same.squared_error);
+        for (std::size_t s = 0; s < 2; ++s) {
+            EXPECT_EQ(run.curves[s].back().iterations, 9u);
+            EXPECT_EQ(run.curves[s].back().error.mse.all, same.curves[s].back().error.mse.all);
+            EXPECT_EQ(run.reports[s].emitted_paths, same.reports[s].emitted_paths);
+            EXPECT_TRUE(std::ranges::is_sorted(run.curves[s], {}, &CurvePoint::iterations));
+        }
     }
 }
 

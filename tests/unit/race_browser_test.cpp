@@ -26,6 +26,16 @@ using test::between;
 
 std::string without_tags(const std::string& html) { return std::regex_replace(html, std::regex("<[^>]*>"), " "); }
 
+std::string percent_decode(const std::string& text) {
+    std::string decoded;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool is_code = text[i] == '%';
+        decoded += is_code ? char(std::stoi(text.substr(i + 1, 2), nullptr, 16)) : text[i];
+        if (is_code) i += 2;
+    }
+    return decoded;
+}
+
 class RaceInBrowser : public testing::Test {
 protected:
     void SetUp() override {
@@ -115,6 +125,22 @@ TEST_F(RaceInBrowser, NumbersAreThoseOfTheRecord) {
         EXPECT_NEAR(seconds, own, 0.005 * own) << row;
         EXPECT_EQ(row.find("not reached") != std::string::npos, name != "sppm") << row;
     }
+}
+
+TEST_F(RaceInBrowser, APlotIsSavedAsAFileOfItsOwn) {
+    write({"sppm", "cppm"});
+    const std::string page = drawn("#metric=mse");
+    EXPECT_EQ(test::all(page, "download=\"(mse-[a-z]+\\.svg)\""),
+              (std::vector<std::string>{"mse-iterations.svg", "mse-seconds.svg"}));
+    const std::string svg = percent_decode(between(page, "href=\"data:image/svg+xml,", "\""));
+    EXPECT_TRUE(svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\"")) << svg.substr(0, 80);
+    EXPECT_TRUE(svg.ends_with("</svg>"));
+    EXPECT_NE(svg.find(">sppm, slope −"), std::string::npos) << "entrants are named in it";
+    EXPECT_NE(svg.find(">cppm, slope −"), std::string::npos);
+    EXPECT_EQ(svg.find("class="), std::string::npos) << "nothing is left to a style sheet";
+    EXPECT_EQ(svg.find("var("), std::string::npos);
+    EXPECT_NE(svg.find("fill=\"rgb(89, 98, 109)\""), std::string::npos) << "labels as on the light page";
+    EXPECT_EQ(test::all(svg, "<path[^>]* fill=\"(none)\"").size(), 2u) << "a line each, not filled";
 }
 
 TEST_F(RaceInBrowser, TheAddressChoosesMetricViewCropAndCurves) {

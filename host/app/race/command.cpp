@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include "app/checkpoint_file.h"
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/display.h"
@@ -147,15 +148,48 @@ Image make_race_reference(const RaceOptions& options, RaceInput& input, const Ra
     return reference.mean;
 }
 
+/// Where an entrant's state lies in the folder of a race.
+fs::path state_file(const fs::path& folder, const Entrant& entrant) {
+    return folder / "states" / fmt::format("{}-{}.ckpt", file_stem(entrant), entrant.settings.seed);
+}
+
+/// A state that cannot be written is told, and the race goes on.
+RaceStates states_of(const Scene& scene, const RaceOptions& options, const Image& reference) {
+    RaceStates states;
+    const auto identity = [&](const Entrant& entrant) {
+        return identity_of(options.scene, scene, entrant.settings, &reference);
+    };
+    if (options.resume) {
+        states.find = [=, &options](const Entrant& entrant) -> std::optional<Checkpoint> {
+            const fs::path file = state_file(*options.resume, entrant);
+            if (!fs::exists(file)) return std::nullopt;  // another seed, or another entrant
+            return read_checkpoint(file, identity(entrant), entrant.settings.size->pixels());
+        };
+    }
+    if (options.checkpoint) {
+        states.keep = [=, &options](const Entrant& entrant, const Checkpoint& state) {
+            try {
+                write_checkpoint(state_file(options.folder, entrant), identity(entrant), state);
+            } catch (const Error& error) {
+                if (error.code() != ExitCode::cannot_write) throw;
+                print_message(fmt::format("warning: no state of {}: {}", entrant.name, error.what()));
+            }
+        };
+    }
+    return states;
+}
+
 RaceResult race_with_progress(const Scene& scene, const RaceOptions& options, const RaceSettings& race,
                               const Image& reference, Device& device) {
     ProgressLine line(stderr, ::isatty(STDERR_FILENO) == 1, std::nullopt);
     double wall = 0.0;
-    RaceResult result = run_race(scene, race, reference, device, [&](const RaceProgress& progress) {
+    const RaceStates states = states_of(scene, options, reference);
+    const auto keep_racing = [&](const RaceProgress& progress) {
         wall = progress.wall_seconds;
         if (!options.quiet) line.update(wall, race_text(progress));
         return !interrupted();
-    });
+    };
+    RaceResult result = run_race(scene, race, reference, device, keep_racing, states);
     if (!options.quiet) {
         line.finish_with(
             fmt::format("{} entrants, {} seeds in {:.1f} s", result.runs.size(), result.seeds.size(), wall));
@@ -213,7 +247,13 @@ void execute(const RaceOptions& options) {
         reference = read_reference(input.reference, *sample.settings.size);
         print_warnings(mismatches(input, exr_attributes(options.scene, scene, sample)));
     }
+    if (options.resume && !fs::is_directory(*options.resume / "states")) {
+        throw Error(ExitCode::no_input, fmt::format("--resume: there are no states in {}: a race keeps them with "
+                                                    "--checkpoint",
+                                                    options.resume->string()));
+    }
     make_folder(options.folder);
+    if (options.checkpoint) make_folder(options.folder / "states");
     check_race_outputs(options, input, race);
     Device device(options.device);
     const PipelineCache cache(device, options.device.cache);

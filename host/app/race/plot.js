@@ -81,6 +81,53 @@ function boundsOf(metric, axis) {
   };
 }
 
+/** What a plot needs of the style of the page once it is a file of its own. */
+const ownStyle = [
+  ...['fill', 'stroke', 'stroke-width', 'stroke-dasharray', 'stroke-linejoin', 'opacity'],
+  ...['font-family', 'font-size', 'font-weight', 'text-anchor'],
+];
+
+/** The colours of the light page: those of paper. */
+function lightColours() {
+  const {style} = document.styleSheets[0].cssRules[0];
+  return [...style].filter((name) => name.startsWith('--')).map((name) => `${name}:${style.getPropertyValue(name)};`);
+}
+
+/** The plot alone as the address of an SVG: its colours written out, its entrants named below it. */
+function svgAddress(svg, metric, axis) {
+  const copy = svg.cloneNode(true);
+  const {width, height} = svg.viewBox.baseVal;
+  const columns = Math.max(1, Math.floor(width / 170));
+  shown().forEach((entrant, i) => {
+    const {slope} = entrant.metrics[metric.name][`against_${axis}`];
+    const place = `translate(${14 + (i % columns) * (width / columns)} ${height + 12 + 18 * Math.floor(i / columns)})`;
+    copy.append(
+      make(
+        'g',
+        {transform: place},
+        make('line', {x1: -11, x2: 11, y1: 0, y2: 0, stroke: entrant.colour, 'stroke-width': 2}),
+        make('path', {d: shape(entrant, 4), fill: entrant.colour}),
+        make('text', {x: 17, y: 4}, slope ? `${entrant.name}, slope ${signed(slope.mean)}` : entrant.name),
+      ),
+    );
+  });
+  const whole = height + 18 * Math.ceil(shown().length / columns) + 8;
+  for (const [name, value] of Object.entries({viewBox: `0 0 ${width} ${whole}`, width, height: whole})) {
+    copy.setAttribute(name, value);
+  }
+  copy.querySelector('.cursor').remove();
+  const holder = make('div', {class: 'plot', style: `${lightColours().join('')}position:absolute;visibility:hidden`});
+  holder.append(copy);
+  document.body.append(holder);
+  for (const element of copy.querySelectorAll('line, path, text')) {
+    const style = getComputedStyle(element);
+    for (const name of ownStyle) element.setAttribute(name, style.getPropertyValue(name));
+  }
+  holder.remove();
+  for (const element of copy.querySelectorAll('[class]')) element.removeAttribute('class');
+  return `data:image/svg+xml,${encodeURIComponent(new XMLSerializer().serializeToString(copy))}`;
+}
+
 function plot(figure, metric, axis) {
   const title = axis === 'iterations' ? 'iterations' : 'seconds on the clock';
   const bounds = boundsOf(metric, axis);
@@ -224,7 +271,9 @@ function plot(figure, metric, axis) {
     row.addEventListener('pointerleave', fade(false));
     legend.append(row);
   }
-  figure.append(svg, tip, legend);
+  const save = make('a', {class: 'save', download: `${metric.name}-${axis}.svg`, href: svgAddress(svg, metric, axis)});
+  save.textContent = 'Save as SVG';
+  figure.append(svg, tip, legend, save);
 
   svg.addEventListener('pointermove', (event) => {
     const scale = width / svg.clientWidth;
