@@ -614,7 +614,13 @@ std::string what_is_wrong(const CLI::App& app, const std::string& found) {
                                results[1]);
         }
     }
-    return extra.empty() ? found : fmt::format("'{}' has no place", extra.front());
+    if (!extra.empty()) return fmt::format("'{}' has no place", extra.front());
+    // CLI11 says "--size: 1 required WxH missing".
+    const std::string one = ": 1 required ", missing = " missing";
+    const std::size_t at = found.find(one);
+    if (at == std::string::npos || !found.ends_with(missing)) return found;
+    const std::size_t value = at + one.size();
+    return fmt::format("{} needs {}", found.substr(0, at), found.substr(value, found.size() - missing.size() - value));
 }
 
 template <typename T> Options read(const Command& command, const Words& words) {

@@ -47,7 +47,8 @@ std::int64_t width(const Imath::Box2i& window) { return std::int64_t(window.max.
 
 std::int64_t height(const Imath::Box2i& window) { return std::int64_t(window.max.y) - window.min.y + 1; }
 
-/// The channels that are red, green and blue: R, G and B, else those of the one layer that has them, else Y for all.
+/// The channels that are red, green and blue: R, G and B, else those of the one layer that has them, or of the one
+/// that is Combined, else Y for all.
 std::array<std::string, 3> rgb_channels(const Imf::ChannelList& channels, const fs::path& file) {
     const auto of_layer = [](const std::string& prefix) {
         return std::array{prefix + "R", prefix + "G", prefix + "B"};
@@ -63,6 +64,9 @@ std::array<std::string, 3> rgb_channels(const Imf::ChannelList& channels, const 
         const std::string prefix = name.substr(0, name.size() - 1);
         if (has(of_layer(prefix))) layers.push_back(prefix);
     }
+    // Of Blender's layers of passes the picture is that of this name.
+    const auto is_picture = [](const std::string& layer) { return ("." + layer).ends_with(".Combined."); };
+    if (std::ranges::count_if(layers, is_picture) == 1) layers = {*std::ranges::find_if(layers, is_picture)};
     if (layers.size() == 1) return of_layer(layers.front());
     if (layers.size() > 1) {
         fail_to_read(file, fmt::format("it has {} layers of R, G and B ('{}', '{}', ...), one is read", layers.size(),

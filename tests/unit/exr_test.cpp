@@ -347,6 +347,14 @@ TEST(Exr, ReadsGreyAndTheOneLayerThatThereIs) {
                   {"View.Combined.B", Imf::HALF, 3.0f},
                   {"View.Depth.Z", Imf::FLOAT, 9.0f}});
     EXPECT_EQ(read_exr(folder / "layer.exr").at(2, 3), glm::vec3(1.0f, 2.0f, 3.0f));
+    write_planes(folder / "passes.exr", box(0, 0, 3, 3), box(0, 0, 3, 3),
+                 {{"View.AO.R", Imf::FLOAT, 7.0f},
+                  {"View.AO.G", Imf::FLOAT, 7.0f},
+                  {"View.AO.B", Imf::FLOAT, 7.0f},
+                  {"View.Combined.R", Imf::FLOAT, 1.0f},
+                  {"View.Combined.G", Imf::FLOAT, 2.0f},
+                  {"View.Combined.B", Imf::FLOAT, 3.0f}});
+    EXPECT_EQ(read_exr(folder / "passes.exr").at(2, 3), glm::vec3(1.0f, 2.0f, 3.0f));
     write_planes(folder / "two.exr", box(0, 0, 3, 3), box(0, 0, 3, 3),
                  {{"a.R", Imf::HALF, 1.0f},
                   {"a.G", Imf::HALF, 1.0f},
