@@ -64,6 +64,7 @@ Integrator::Integrator(const SceneOnDevice& on_device, const Camera& camera, con
     const EstimatorRow& estimator = find_estimator(settings.estimator);
     const std::uint32_t features = feature_bits(scene, settings);
     scale_ = scene.frame.scale;
+    measures_area_ = settings.disc_area == area_measured && !settings.caustics;
     set_test(params_, estimator, settings);
     set_params(scene, settings);
 
@@ -88,7 +89,7 @@ Integrator::Integrator(const SceneOnDevice& on_device, const Camera& camera, con
     estimator_ = estimator.name;
     std::vector<KernelId> all;
     for (const KernelRow& row : kernel_rows()) {
-        if (row.pass == Pass::trace) continue;
+        if (row.pass == Pass::trace || (row.pass == Pass::area && !measures_area_)) continue;
         all.push_back(row.id);
         kernels_.emplace(row.id, Compiled{KernelChoice(forms_of(row, forms_)), {}, {std::string(row.name)}});
     }
@@ -207,6 +208,7 @@ void Integrator::iterate(std::uint32_t i, const Part& part) {
         const std::uint64_t pixels = bands_.size(band);
         if (runs(Pass::eye)) launch_rounds(KernelId::eye, pixels, i, round(Pass::eye));
         if (runs(Pass::knn)) look_for_radii(i, round(Pass::knn));
+        if (runs(Pass::area) && measures_area_) launch_rounds(KernelId::area, pixels, i, round(Pass::area));
         if (runs(Pass::gather)) launch_rounds(KernelId::gather, pixels, i, round(Pass::gather));
         if (runs(Pass::update)) update(i, pixels);
         from = Pass::photon;  // the bands that follow go through all

@@ -167,6 +167,7 @@ private:
     gpu::Params params_{};
     Counts counts_;  // of what the photons' slots and levels do not change
     Bands bands_;
+    bool measures_area_ = false;  // of discs
     Digits digits_ = digits_of(params_);
     Bindings bindings_;
     Commands commands_;

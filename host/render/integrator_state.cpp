@@ -203,6 +203,7 @@ void Integrator::add_written(Written& written, Pass pass, std::uint32_t band) co
             break;
         }
         case Pass::knn:
+        case Pass::area:
         case Pass::gather:
         case Pass::picture:
         case Pass::trace: break;
@@ -222,7 +223,7 @@ std::vector<Integrator::PassHash> Integrator::run_hashed() {
     };
     for (const Pass pass : {Pass::photon, Pass::grid}) run(pass, 0);
     for (std::uint32_t band = 0; band < bands_.count(); ++band) {
-        for (const Pass pass : {Pass::eye, Pass::knn, Pass::gather, Pass::update}) run(pass, band);
+        for (const Pass pass : {Pass::eye, Pass::knn, Pass::area, Pass::gather, Pass::update}) run(pass, band);
     }
     std::vector<PassHash> hashes;
     for (const auto& [pass, arrays] : written) hashes.push_back({std::string(name_of(pass)), arrays.hash()});

@@ -20,6 +20,10 @@ inline constexpr std::uint32_t usual_light_paths = 65536;
 inline constexpr const char* direct_sampled = "sampled";
 inline constexpr const char* direct_gathered = "gathered";
 
+/// Values of Settings::disc_area.
+inline constexpr const char* area_measured = "measured";
+inline constexpr const char* area_whole = "whole";
+
 struct Settings {
 #define SETTING(member, type, standard, name, kind, values, unit, help) type member = standard;
 #include "render/settings_table.h"

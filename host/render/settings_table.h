@@ -60,6 +60,11 @@ SETTING(direct, std::string, direct_sampled, "direct", parameter,
               Word{direct_gathered, "photons bring it as all other light"}),
         name, "Light that comes straight from its source:{choices}\n(default: {})")
 
+SETTING(disc_area, std::string, area_measured, "disc-area", parameter,
+        words(Word{area_measured, "that of the surface in it, as rays find it: edges are not dark"},
+              Word{area_whole, "pi R^2, as in the paper"}),
+        name, "By which area the photons of a disc are divided:{choices}\n(default: {})")
+
 SETTING(knn, std::uint32_t, 10, "knn", parameter, within(2u, 256u), count,
         "The starting radius reaches this many photons (default: {})")
 

@@ -51,10 +51,9 @@ bool in_segment(GridLevel level, Walk walk, vec3 position) {
     return level.dims.w == 0u || (cell.yz == walk.cell.yz && cell.x / HASH_RUN == walk.cell.x / HASH_RUN);
 }
 
-// Both normals on the side they were seen from; photons on the other side count too where a rough surface transmits.
-// The packed normal needs no normalisation for this.
-bool accepted_side(uint packed, vec3 normal, bool both_sides) {
-    vec3 n = unpack_octahedron(packed);
+// Of a surface where a photon lies and of the pixel's, on the side they were seen from; photons on the other side count
+// too where a rough surface transmits. n: of any length.
+bool agrees(vec3 n, vec3 normal, bool both_sides) {
     float d = dot(n, normal);
     if (HAS_ROUGH && HAS_TRANSMISSION) d = both_sides ? abs(d) : d;
     return d > 0.0 && d * d >= NORMAL_AGREEMENT * NORMAL_AGREEMENT * dot(n, n);
@@ -65,7 +64,7 @@ bool accepts(GridLevel level, Walk walk, Photon photon, vec3 position, float rea
              out float squared) {
     vec3 offset = photon.position - position;
     squared = dot(offset, offset);
-    return squared < reach2 && accepted_side(photon.normal, normal, both_sides) &&
+    return squared < reach2 && agrees(unpack_octahedron(photon.normal), normal, both_sides) &&
            in_segment(level, walk, photon.position);
 }
 

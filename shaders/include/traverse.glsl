@@ -1,9 +1,9 @@
-// Nearest hit of a ray with the 4-wide quantised BVH, or whether there is any up to some distance. SIMD group: the subgroup, the lanes that run together. Reads
-// nodes and triangles; O(log triangles) steps a ray. The stack holds exactly what this tree can need. Fails only by
-// running out of `steps`, and says so. Where a child of the scene's tree is an instance of a mesh the ray goes on in
-// the mesh's space and through the mesh's own tree, and then back in the scene's. Written for software Vulkan, where a
-// load of 16 bytes from texels is one call for eight lanes, every branch is run by every lane, and a store to an array
-// is a branch for each lane.
+// Nearest hit of a ray with the 4-wide quantised BVH, or whether there is any up to some distance. SIMD group: the
+// subgroup, the lanes that run together. Reads nodes and triangles; O(log triangles) steps a ray. The stack holds
+// exactly what this tree can need. Fails only by running out of `steps`, and says so. Where a child of the scene's tree
+// is an instance of a mesh the ray goes on in the mesh's space and through the mesh's own tree, and then back in the
+// scene's. Written for software Vulkan, where a load of 16 bytes from texels is one call for eight lanes, every branch
+// is run by every lane, and a store to an array is a branch for each lane.
 #ifndef TRAVERSE_GLSL
 #define TRAVERSE_GLSL
 

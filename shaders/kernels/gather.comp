@@ -42,6 +42,7 @@ struct Receiver {
     vec3 bitangent;
     float reach2;      // squared distance up to which photons are looked at
     vec3 weight;       // of what arrives, where errors are asked for
+    float per_surface; // area of the disc over that of the surface in it
     // In glossy scenes the surface that the eye path ended on, as it met it.
     Surface surface;
     Bsdf bsdf;
@@ -69,7 +70,9 @@ Receiver receiver_of(uint pixel, HitPosition hit) {
     r.normal = unpack_direction(seen.normal);
     r.weight = seen.weight;
     r.both_sides = gathers_both_sides(hit);
-    r.radius2 = pixels_at(pixel).radius2;
+    PixelState state = pixels_at(pixel);
+    r.radius2 = state.radius2;
+    r.per_surface = 1.0 + state.excess;
     r.inverse_radius = inversesqrt(r.radius2);
     tangents(r.normal, r.tangent, r.bitangent);
     r.tangent *= r.inverse_radius;
@@ -113,7 +116,7 @@ void weigh(Receiver r, uint index, inout Gathered sum) {
         bool first = is_first_rough(flux);
         float half_area = q < 0.5 ? 2.0 * photon_weight(2.0 * q, first) : 0.0;
         float quarter = q < 0.25 ? 4.0 * photon_weight(4.0 * q, first) : 0.0;
-        bias += luminance(r.weight * (counted + power * (INNER_BIAS * (half_area - quarter) - half_area)));
+        bias += luminance(r.weight * (r.per_surface * counted + power * (INNER_BIAS * (half_area - quarter) - half_area)));
     }
     if (HAS_AOVS) {
         uint layer = layer_of(flux);
@@ -211,7 +214,7 @@ void main() {
         if (!walked(cursor, box)) {
             eye_paths[pixel].layer = layer_flux;
         } else if (is_first_seen(pixel)) {
-            vec3 factor = hit_weight_at(pixel).weight * (params.inverse_paths / (PI * r.radius2));
+            vec3 factor = hit_weight_at(pixel).weight * (params.inverse_paths * r.per_surface / (PI * r.radius2));
             for (uint i = 0u; i < LAYERS; ++i) layer_flux[i] *= factor;
             add_layers(pixel, layer_flux);
         }

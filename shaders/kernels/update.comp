@@ -26,9 +26,9 @@ void main() {
     Gathered sum = gathered_at(pixel);
     float bias = 0.0;
     if (diffuse) {
-        // L = W rho / pi * sum(power) / (pi R^2 J), the radius being that before this update.
+        // L = W rho / pi * sum(power) / (A J), A = pi R^2 or the area of the surface in it; R as before this update.
         float inverse = params.inverse_paths / (PI * state.radius2);
-        estimate += hit_weight_at(pixel).weight * sum.flux * inverse;
+        estimate += hit_weight_at(pixel).weight * sum.flux * (inverse * (1.0 + state.excess));
         if (HAS_ERRORS) bias = eye_paths[pixel].bias * inverse;
     }
     if (HAS_ERRORS) add_to_group(pixel, estimate, bias);

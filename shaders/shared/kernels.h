@@ -14,7 +14,7 @@
 #endif
 
 // Of an iteration, in its order; `picture`: of none, and not on a render's clock; `trace`: of the path tracer.
-#define PASSES(ROW) ROW(photon) ROW(grid) ROW(eye) ROW(knn) ROW(gather) ROW(update) ROW(picture) ROW(trace)
+#define PASSES(ROW) ROW(photon) ROW(grid) ROW(eye) ROW(knn) ROW(area) ROW(gather) ROW(update) ROW(picture) ROW(trace)
 
 // clang-format off
 #define KERNELS(ROW)                                                  \
@@ -31,6 +31,7 @@
     ROW(eye,           eye,     groups,           one,  PASS_EYE)    \
     ROW(searches,      knn,     one,              one,  0u)          \
     ROW(knn,           knn,     one,              each, PASS_KNN)    \
+    ROW(area,          area,    groups,           one,  PASS_AREA)   \
     ROW(gather,        gather,  groups,           each, PASS_GATHER) \
     ROW(update,        update,  one,              each, 0u)          \
     ROW(advance,       update,  one,              one,  0u)          \
@@ -46,4 +47,5 @@
 #define PASS_GATHER 8u
 #define PASS_TRACE 32u
 #define PASS_CAPACITY 16u  // a lane stored more photons than it has slots
+#define PASS_AREA 128u
 #define PASS_LEVELS 64u    // the grid is to have more levels than there is room for

@@ -462,7 +462,8 @@ struct SearchState {
     /* radius2 + radius2_low: R^2 where a schedule shrinks it by little in every iteration */ \
     FIELD(float, radius2_low) \
     FIELD(float, count_low)    /* count + count_low: the count, beyond what a float holds */ \
-    FIELD(uint, unused)
+    /* about pi R^2 over the area of the surface in this iteration's disc, less 1; 0: it is not measured */ \
+    FIELD(float, excess)
 RECORD(PixelState)
 
 // What a picture's first surfaces are like: sums over the iterations in which the pixel met one.

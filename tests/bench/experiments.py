@@ -67,13 +67,14 @@ def reference_of(options, scene):
 def race(options, scene, **changes):
     """Runs a race, unless it has been run: (its race.json as a Race, its folder). changes: options of this race.
 
-    Photons bring all light, as in the paper.
+    Photons bring all light, and count by the area of the whole disc, as in the paper.
     """
     chosen = argparse.Namespace(**{**vars(options), **changes})
     scene_file, reference = ROOT / "scenes" / f"{scene}.gltf", reference_of(chosen, scene)
     arguments = flags(estimators=chosen.estimators, iterations=chosen.iterations, photons=chosen.photons,
                       size=chosen.size, seeds=chosen.seeds, knn=chosen.knn, device=chosen.device, direct="gathered",
-                      exposure=getattr(chosen, "exposure", None), seed=getattr(chosen, "seed", None))
+                      disc_area="whole", exposure=getattr(chosen, "exposure", None),
+                      seed=getattr(chosen, "seed", None))
     key = hashlib.sha256("\n".join(arguments).encode())
     for file in (chosen.program, scene_file, reference):
         key.update(hashlib.sha256(file.read_bytes()).digest())

@@ -30,7 +30,7 @@
 #define MEMBERS_HIT_SURFACE X(triangle) X(barycentric) X(outgoing)
 #define MEMBERS_GATHERED X(flux) X(count) X(excess) X(tested)
 #define MEMBERS_PIXEL_STATE X(radius2) X(seeded) X(count) X(total) X(batch) X(rejections) \
-    X(photons) X(seen) X(statistic) X(radius2_low) X(count_low) X(unused)
+    X(photons) X(seen) X(statistic) X(radius2_low) X(count_low) X(excess)
 #define MEMBERS_AOVS X(albedo) X(normal) X(depth) X(hits) X(albedo_low) X(normal_low) X(depth_low) X(layer) X(layer_low)
 #define MEMBERS_FILM X(sum) X(low)
 #define MEMBERS_PATH_STATE X(origin) X(path) X(direction) X(flags) X(power) X(stored) X(power0) X(begin) X(next) \

@@ -388,7 +388,8 @@ TEST_F(Trace, FindsWhetherThereIsAnythingOnTheWay) {
         for (const auto& ray : rays) {
             const auto nearest = oracle::nearest_hit(scene, {glm::dvec3(ray.origin), glm::dvec3(ray.direction)});
             const bool leaves_out = nearest && inputs.size() % 2 == 0;
-            const double within = inputs.size() % 3 == 0 ? 1e30 : (nearest ? nearest->t : 1.0) * uniform(random, 0.5, 2);
+            const double within =
+                inputs.size() % 3 == 0 ? 1e30 : (nearest ? nearest->t : 1.0) * uniform(random, 0.5, 2);
             inputs.push_back({ray.origin, ray.direction, float(within), leaves_out ? nearest->triangle : NO_TRIANGLE});
         }
         const auto found = occlusion(flat, inputs);
@@ -414,8 +415,8 @@ TEST_F(Trace, FindsWhetherThereIsAnythingOnTheWay) {
             const auto touches = [&](std::uint32_t triangle) {
                 return distance_to_edges(scene, triangle, rays[i]) <= edge_distance;
             };
-            ASSERT_TRUE(near || std::ranges::any_of(std::views::iota(0u, std::uint32_t(scene.triangles.size())),
-                                                    touches))
+            ASSERT_TRUE(near ||
+                        std::ranges::any_of(std::views::iota(0u, std::uint32_t(scene.triangles.size())), touches))
                 << "ray " << i << " met something before " << inputs[i].within << " where nothing is";
         }
         EXPECT_GT(blocked, rays.size() / 20) << "too few to mean anything";
