@@ -54,6 +54,13 @@ struct DeviceFacts {
     std::vector<MemoryType> memory;
 };
 
+/// Most buffers that any kernel has of a kind (shaders/shared/buffers.h); each has a set of its own.
+struct KernelNeeds {
+    std::uint32_t uniform = 1, storage = 10, texels = 19;
+    std::uint32_t as_storage = 25;  // storage, where texels are storage as well
+};
+inline constexpr KernelNeeds kernel_needs;
+
 /// Why the kernels cannot run on a device, with what they need of it; empty where they can.
 std::string lacking(const DeviceFacts& facts);
 
@@ -76,6 +83,10 @@ struct DevicePolicy {
     std::uint64_t memory_bytes = 0;
     /// That memory is the host's, and no more of it is there than the host has left.
     bool memory_of_host = false;
+
+    /// Kernels read as storage what they read elsewhere as texels, of which the device allows too few in a buffer or
+    /// too few buffers (vk/texels.h).
+    bool texels_as_storage = false;
 
     /// Invocations that keep the device busy: work with a choice is cut into about as many.
     std::uint32_t busy_lanes = 0;
