@@ -224,7 +224,16 @@ VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT
 
 }  // namespace
 
-const Device::Impl::Layout& layout_of(Device::Impl& device, const std::vector<std::uint32_t>& bindings) {
+const Device::Impl::Layout& layout_of(Device::Impl& device, const std::vector<std::uint32_t>& used) {
+    std::vector<std::uint32_t> bindings = used;
+    if (device.policy.one_set) {
+        bindings.clear();
+        for (const BoundBuffer& row : bound_buffers) {
+            const auto binding = std::uint32_t(row.binding);
+            if (row.access == Access::uniform || has_storage(row.access)) bindings.push_back(binding);
+            if (has_texels(row.access)) bindings.push_back(TEXELS_BINDING + binding);
+        }
+    }
     const auto found = device.layouts.find(bindings);
     if (found != device.layouts.end()) return found->second;
     std::vector<vk::DescriptorSetLayoutBinding> rows;

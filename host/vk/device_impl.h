@@ -36,7 +36,7 @@ struct Device::Impl {
     };
     Staging staging;
     std::optional<vk::raii::PipelineCache> pipelines;
-    /// A set of what a kernel uses, and of nothing else: devices have limits of what one may hold.
+    /// Of a set with what a kernel uses, or with all buffers (DevicePolicy::one_set).
     struct Layout {
         std::vector<vk::DescriptorSetLayoutBinding> bindings;
         vk::raii::DescriptorSetLayout set;
@@ -61,7 +61,7 @@ struct Device::Impl {
     std::vector<std::string> messages;
 };
 
-/// The layout of those bindings; made where no kernel had it before.
+/// The layout for a kernel with those bindings; made where no kernel had it before.
 const Device::Impl::Layout& layout_of(Device::Impl& device, const std::vector<std::uint32_t>& bindings);
 
 /// Runs `work` and turns Vulkan's exceptions into Error: lost device, memory, anything else internal.

@@ -175,7 +175,8 @@ const std::string& Kernel::name() const { return impl_->name; }
 struct Commands::Impl {
     Device* device = nullptr;
     const Bindings* bindings = nullptr;
-    std::uint32_t set = 0;  // of the launches that follow
+    std::uint32_t set = 0;    // of the launches that follow
+    vk::DescriptorSet bound;  // what the last of them was with
     std::optional<vk::raii::CommandBuffer> commands;
     std::optional<vk::raii::Fence> fence;
     std::vector<vk::raii::QueryPool> stamps;  // one more where a submission has more launches than any before
@@ -199,6 +200,7 @@ Commands::~Commands() = default;
 void Commands::begin() {
     guarded("recording commands", [&] {
         impl_->launched.clear();
+        impl_->bound = nullptr;
         impl_->stamped = 0;
         impl_->commands->reset();
         impl_->commands->begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
@@ -250,8 +252,10 @@ template <typename Dispatch> void Commands::record(const Kernel& kernel, const g
     if (takes_labels) commands.beginDebugUtilsLabelEXT(vk::DebugUtilsLabelEXT(kernel.name().c_str()));
     const Device::Impl::Pipeline& made = *kernel.impl().made;
     const vk::DescriptorSet set = impl_->bindings->impl().set_for(*made.layout, impl_->set);
+    if (std::exchange(impl_->bound, set) != set) {
+        commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *made.layout->pipeline, 0, set, {});
+    }
     commands.bindPipeline(vk::PipelineBindPoint::eCompute, **made.pipeline);
-    commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *made.layout->pipeline, 0, set, {});
     commands.pushConstants<gpu::Launch>(*made.layout->pipeline, vk::ShaderStageFlagBits::eCompute, 0, push);
     dispatch(commands);
     const vk::MemoryBarrier barrier(Access::eShaderWrite,

@@ -15,8 +15,8 @@ namespace vkcppm {
 
 class Device;
 
-/// Which buffer stands at which binding, several times over. Each kernel has a descriptor set of those that it uses,
-/// made at its first launch. Rebinding needs an idle device.
+/// Which buffer stands at which binding, several times over. Their descriptor sets are made at the first launch that
+/// needs them. Rebinding needs an idle device.
 class Bindings {
 public:
     explicit Bindings(Device& device, std::uint32_t sets = 1);

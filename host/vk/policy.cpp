@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "shared/types.h"
+#include "vk/binding.h"
 
 namespace vkcppm {
 namespace {
@@ -21,6 +22,16 @@ constexpr const char* way_names[] = {"cpu", "gpu"};  // in the order of Way
 constexpr std::uint64_t least_texels = 1u << 21;
 constexpr std::uint64_t least_storage_bytes = 1u << 27;
 constexpr std::uint32_t largest_group = 128;  // of forms_for() in host/render/kernel_choice.cpp
+
+std::uint32_t bound(bool (*has)(Access)) {
+    return std::uint32_t(std::ranges::count_if(bound_buffers, has, &BoundBuffer::access));
+}
+
+bool has_room_for_all(const DeviceFacts& facts) {
+    const std::uint32_t storage = bound(has_storage), texels = bound(has_texels);
+    return facts.storage_buffers >= storage && facts.texel_buffers >= texels &&
+           facts.resources >= storage + texels + kernel_needs.uniform;
+}
 
 bool has_too_few_texels(const DeviceFacts& facts) {
     return facts.texels < least_texels || facts.texel_buffers < kernel_needs.texels;
@@ -108,6 +119,7 @@ DevicePolicy policy_of(const DeviceFacts& facts, std::uint32_t threads, std::opt
     const bool cpu = policy.way == Way::cpu;
 
     policy.texels_as_storage = has_too_few_texels(facts);
+    policy.one_set = !policy.texels_as_storage && has_room_for_all(facts);
     policy.maps_buffers = forced ? cpu : sees_the_largest_heap(facts);
     policy.buffer_memory = memory_by(facts, [&](const MemoryType& type) -> std::optional<int> {
         if (type.device_local) return type.mappable == policy.maps_buffers ? 0 : 1;

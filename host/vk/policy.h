@@ -54,7 +54,7 @@ struct DeviceFacts {
     std::vector<MemoryType> memory;
 };
 
-/// Most buffers that any kernel has of a kind (shaders/shared/buffers.h); each has a set of its own.
+/// Most buffers that any kernel has of a kind (shaders/shared/buffers.h).
 struct KernelNeeds {
     std::uint32_t uniform = 1, storage = 10, texels = 19;
     std::uint32_t as_storage = 25;  // storage, where texels are storage as well
@@ -87,6 +87,11 @@ struct DevicePolicy {
     /// Kernels read as storage what they read elsewhere as texels, of which the device allows too few in a buffer or
     /// too few buffers (vk/texels.h).
     bool texels_as_storage = false;
+
+    /// One descriptor set has all buffers, else a kernel has one of its own with what it uses. Mesa 22.3's lavapipe
+    /// compiles kernels again, for the parameters of the moment, where a set was bound since their last launch: `eye`
+    /// takes 1.2 times as long if that is before every launch and not once a submission.
+    bool one_set = true;
 
     /// Invocations that keep the device busy: work with a choice is cut into about as many.
     std::uint32_t busy_lanes = 0;

@@ -1,7 +1,7 @@
 #pragma once
-// Texel buffers are read fastest on software Vulkan, and some drivers allow no more than 65,536 texels in one, as few as
-// Vulkan permits. There kernels read the same words as storage: the modules are changed before the driver sees them, so
-// that kernels are written once.
+// Texel buffers are read fastest on software Vulkan, and some drivers allow no more than 65,536 texels in one, as few
+// as Vulkan permits. There kernels read the same words as storage: the modules are changed before the driver sees them,
+// so that kernels are written once.
 
 #include <cstdint>
 #include <span>

@@ -1,4 +1,4 @@
-"""Groups of tests (tests/README.md) on a device that may fail: what crashes or hangs is told, and the rest still runs."""
+"""Groups of tests (tests/README.md) on a device that may fail: what crashes or hangs is told, and the rest runs."""
 
 import collections
 import dataclasses

@@ -119,6 +119,7 @@ TEST(Policy, WhatIsLackingIsSaid) {
 TEST(Policy, FewTexelsAreReadAsStorage) {
     DeviceFacts facts = facts_of(published[0]);
     EXPECT_FALSE(policy_of(facts, 8).texels_as_storage);
+    EXPECT_TRUE(policy_of(facts, 8).one_set);
     facts.texels = 65536;
     EXPECT_EQ(lacking(facts), "");
     EXPECT_TRUE(policy_of(facts, 8).texels_as_storage);
@@ -126,10 +127,14 @@ TEST(Policy, FewTexelsAreReadAsStorage) {
     facts.texel_buffers = 16;
     EXPECT_EQ(lacking(facts), "");
     EXPECT_TRUE(policy_of(facts, 8).texels_as_storage);
+    EXPECT_FALSE(policy_of(facts, 8).one_set);
     facts = facts_of(published[0]);
     facts.storage_buffers = 16;
     EXPECT_EQ(lacking(facts), "");
     EXPECT_FALSE(policy_of(facts, 8).texels_as_storage);
+    EXPECT_FALSE(policy_of(facts, 8).one_set);
+    facts.storage_buffers = 32;  // lavapipe, which is slower by as many sets as kernels
+    EXPECT_TRUE(policy_of(facts, 8).one_set);
 }
 
 using Types = std::vector<std::uint32_t>;

@@ -1,5 +1,6 @@
-// Kernels that read texels as storage: valid by spirv-val, without a texel left, each buffer at one binding. And what any
-// kernel needs of a device is what the policy says. That they compute the same: cli/faults_test.cpp, kernels.few_texels.
+// Kernels that read texels as storage: valid by spirv-val, without a texel left, each buffer at one binding. And what
+// any kernel needs of a device is what the policy says. That they compute the same: cli/faults_test.cpp and
+// kernels.few_texels.
 
 #include "vk/texels.h"
 
