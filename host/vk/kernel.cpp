@@ -13,6 +13,7 @@
 #include "vk/buffer_impl.h"
 #include "vk/device_impl.h"
 #include "vk/fold.h"
+#include "vk/loops.h"
 #include "vk/reconvergence.h"
 #include "vk/spirv.h"
 #include "vk/texels.h"
@@ -142,6 +143,7 @@ Kernel::Kernel(Device& device, std::string name, std::span<const std::uint32_t> 
             const DevicePolicy& policy = device.policy();
             std::vector<std::uint32_t> words = folded(spirv, own);
             if (policy.texels_as_storage) words = with_storage_for_texels(words);
+            if (policy.closes_loops) words = with_loops_closed(words);
             words = with_promise(words, policy.reconvergence);
             const Device::Impl::Layout& layout = layout_of(device.impl(), bindings_of(words));
             const vk::raii::ShaderModule module(gpu, vk::ShaderModuleCreateInfo({}, words));

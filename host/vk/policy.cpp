@@ -119,6 +119,7 @@ DevicePolicy policy_of(const DeviceFacts& facts, std::uint32_t threads, std::opt
     const bool cpu = policy.way == Way::cpu;
 
     policy.texels_as_storage = has_too_few_texels(facts);
+    policy.closes_loops = policy.texels_as_storage;
     policy.one_set = !policy.texels_as_storage && has_room_for_all(facts);
     policy.maps_buffers = forced ? cpu : sees_the_largest_heap(facts);
     policy.buffer_memory = memory_by(facts, [&](const MemoryType& type) -> std::optional<int> {

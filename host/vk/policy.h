@@ -88,6 +88,10 @@ struct DevicePolicy {
     /// too few buffers (vk/texels.h).
     bool texels_as_storage = false;
 
+    /// What loops compute is handed on lane by lane (vk/loops.h): asked for where texels are storage, for it is there
+    /// that SwiftShader's pictures were wrong without.
+    bool closes_loops = false;
+
     /// One descriptor set has all buffers, else a kernel has one of its own with what it uses. Mesa 22.3's lavapipe
     /// compiles kernels again, for the parameters of the moment, where a set was bound since their last launch: `eye`
     /// takes 1.2 times as long if that is before every launch and not once a submission.
