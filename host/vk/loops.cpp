@@ -4,6 +4,7 @@
 #include <map>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 #include "core/error.h"
 #include "vk/spirv.h"
@@ -164,8 +165,7 @@ private:
             targets.erase(std::unique(targets.begin(), targets.end()), targets.end());
             for (const Word target : targets) before.emplace(target, block.label);
         }
-        // From its header on to its merge block stand the blocks of a loop. Inner loops stand behind the headers of
-        // outer ones: what they hand on, these hand on.
+        // Inner loops stand behind the headers of outer ones: what they hand on, these hand on.
         for (std::size_t header = blocks_.size(); header-- > 0;) {
             if (blocks_[header].merge != 0) close_loop(header, at.at(blocks_[header].merge), at, before);
         }
@@ -178,11 +178,27 @@ private:
         blocks_.clear();
     }
 
+    /// Which blocks can be reached from the header without leaving its loop.
+    std::vector<char> blocks_of_loop(std::size_t header, std::size_t merge,
+                                     const std::unordered_map<Word, std::size_t>& at) const {
+        std::vector<char> reached(blocks_.size());
+        std::vector<std::size_t> waiting{header};
+        while (!waiting.empty()) {
+            const std::size_t block = waiting.back();
+            waiting.pop_back();
+            if (block == merge || std::exchange(reached[block], char(1))) continue;
+            for (const Word target : blocks_[block].targets) waiting.push_back(at.at(target));
+        }
+        return reached;
+    }
+
     void close_loop(std::size_t header, std::size_t merge, const std::unordered_map<Word, std::size_t>& at,
                     const std::multimap<Word, Word>& before) {
+        const std::vector<char> in_loop = blocks_of_loop(header, merge, at);
         std::unordered_set<Word> inside;
-        // The header's own phis keep what a lane had last.
-        for (std::size_t i = header + 1; i < merge; ++i) {
+        for (std::size_t i = 0; i < blocks_.size(); ++i) {
+            // The header has phis alone: they keep what a lane had last.
+            if (!in_loop[i] || i == header) continue;
             for (const auto* steps : {&blocks_[i].phis, &blocks_[i].rest}) {
                 for (const Step& step : *steps) {
                     if (step.code.named && !pointers_.contains(step.words[1])) inside.insert(result_of(step));
@@ -208,13 +224,13 @@ private:
             }
             id = phi;
         };
-        for (std::size_t i = merge; i < blocks_.size(); ++i) {
-            for (Step& phi : blocks_[i].phis) {
+        for (std::size_t i = 0; i < blocks_.size(); ++i) {
+            for (Step& phi : blocks_[i].phis) {  // an operand is used where the block ends that it comes from
                 for (std::size_t k = 3; k < phi.words.size(); k += 2) {
-                    const std::size_t from = at.at(phi.words[k + 1]);
-                    if (from < header || from >= merge) replace(phi.words[k]);
+                    if (!in_loop[at.at(phi.words[k + 1])]) replace(phi.words[k]);
                 }
             }
+            if (in_loop[i]) continue;
             for (Step& step : blocks_[i].rest) {
                 for (std::size_t k = step.code.first(); k < step.words.size(); ++k) {
                     if (step.is_id(k)) replace(step.words[k]);
