@@ -59,6 +59,7 @@ const std::vector<Fault> faults = {
     {"LostAtTheFirstSubmission", "vkQueueSubmit 1 -4", 75, {"the device was lost while running kernels"}},
     {"LostInTheRender", "vkQueueSubmit 4 -4", 75, {"the device was lost while running kernels"}},
     {"LostWhileItIsWaitedFor", "vkWaitForFences 3 -4", 75, {"the device was lost while running kernels"}},
+    {"ThatDoesNothing", "idle", 75, {"does not run its kernels: 0 of 1 iterations are complete"}},
     {"MemoryForTheFirstBuffer",
      "vkAllocateMemory 1 -2",
      71,

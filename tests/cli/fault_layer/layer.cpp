@@ -1,5 +1,6 @@
 // A Vulkan layer that makes the device another one, as the environment says, one thing after another with ; between:
 //   VKCPPM_FAULT="vkQueueSubmit 3 -4"   the third call of the function and all after it return that VkResult
+//   VKCPPM_FAULT="idle"                 what is submitted is done at once, for nothing of it is
 //   VKCPPM_FAULT="heap 0 67108864"      every heap of memory has that many bytes
 //   VKCPPM_FAULT="full 3 65536"         from the third submission on there is room for so many bytes at once, no more
 //   VKCPPM_FAULT="card 0 268435456"     a card of its own: the host sees of its memory a window of so many bytes, or
@@ -146,6 +147,7 @@ template <typename Function> Function next(const void* handle, const char* name)
 VkResult queue_submit(VkQueue queue, std::uint32_t count, const VkSubmitInfo* submits, VkFence fence) {
     ++submissions;
     if (const Fault* fault = faults.strikes("vkQueueSubmit")) return VkResult(fault->value);
+    if (faults.find("idle")) count = 0;
     return next<PFN_vkQueueSubmit>(queue, "vkQueueSubmit")(queue, count, submits, fence);
 }
 
