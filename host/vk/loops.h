@@ -12,8 +12,8 @@ namespace vkcppm {
 
 /// The module with what is computed in a loop used outside by way of a phi in the loop's merge block alone, whatever
 /// an optimizer makes of it. A phi cannot choose pointers and images, none of which may be used outside of the loop
-/// that computes or loads it: of kernels that is so once their texels are storage (vk/texels.h). Throws Error(internal)
-/// where the module has loops and an instruction whose operands are not known (vk/spirv.h).
+/// that computes or loads it: of kernels that is so once their texels are storage (vk/texels.h). A module that holds an
+/// instruction whose operands are not known (vk/spirv.h) is returned as it is.
 std::vector<std::uint32_t> with_loops_closed(std::span<const std::uint32_t> spirv);
 
 }  // namespace vkcppm
