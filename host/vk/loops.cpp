@@ -100,8 +100,8 @@ private:
         return null;
     }
 
-    /// What is never true, which no optimizer knows: that an invocation has a number beyond all groups. None where the
-    /// module does not number invocations.
+    /// What is never true, which no optimizer knows: that an invocation has a number beyond all groups. Plainly false
+    /// where the module does not number invocations, as all kernels with loops do.
     Word never() {
         if (invocation_ == 0) return null_of(bool_);
         if (most_ == 0) {
