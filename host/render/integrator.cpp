@@ -8,6 +8,9 @@
 #include <numbers>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "core/error.h"
 #include "flat/features.h"
 #include "render/error_estimate.h"
 #include "render/estimators.h"
@@ -348,7 +351,12 @@ bool Integrator::run_to(std::uint32_t target) {
         if (completed_ >= target) break;
         submit();
     }
-    assert(completed_ == target);
+    // Else an endless loop, as on drivers that stand for a card which is not there.
+    if (completed_ != target) {
+        throw Error(ExitCode::device_lost, fmt::format("the device '{}' does not run its kernels: {} of {} iterations "
+                                                       "are complete",
+                                                       device_.info().name, completed_, target));
+    }
     return undisturbed;
 }
 

@@ -17,9 +17,10 @@ namespace {
 constexpr std::size_t read_uncached = 4096;
 constexpr std::uint64_t most_staged = 1u << 24;  // bytes of a copy; more goes in several
 
-vk::BufferUsageFlags usage_of(Access access) {
+vk::BufferUsageFlags usage_of(Access access, bool texels_as_storage) {
     using Usage = vk::BufferUsageFlagBits;
     const vk::BufferUsageFlags transfer = Usage::eTransferSrc | Usage::eTransferDst;
+    if (texels_as_storage && has_texels(access)) return transfer | Usage::eStorageBuffer;
     switch (access) {
         case Access::uniform: return transfer | Usage::eUniformBuffer;
         case Access::storage: return transfer | Usage::eStorageBuffer | Usage::eIndirectBuffer;
@@ -139,28 +140,29 @@ Buffer::Buffer(Device& device, Binding binding, std::uint64_t bytes) : impl_(std
     impl.access = bound_buffer(binding).access;
     check_limits(impl);
     const std::vector<std::uint32_t> types = types_with_room(impl);
-    guarded(fmt::format("allocating buffer '{}' of {} bytes ({} bytes are allocated)", impl.name, impl.bytes,
-                        gpu.allocated),
-            [&] {
-                impl.buffer.emplace(*gpu.device, vk::BufferCreateInfo({}, impl.bytes, usage_of(impl.access)));
-                Allocation allocation = allocate(gpu, *impl.buffer, types);
-                const MemoryType& type = gpu.facts.memory[allocation.type];
-                impl.heap = type.heap;
-                impl.memory.emplace(std::move(allocation.memory));
-                gpu.allocated += impl.bytes;
-                gpu.heap_in_use[impl.heap] += impl.bytes;
-                gpu.peak = std::max(gpu.peak, gpu.allocated);
-                impl.buffer->bindMemory(**impl.memory, 0);
-                name_object(gpu, *impl.buffer, impl.name);
-                if (gpu.policy.maps_buffers && type.mappable) {
-                    impl.mapped = static_cast<std::byte*>(impl.memory->mapMemory(0, VK_WHOLE_SIZE));
-                    impl.cached = type.cached;
-                }
-                if (const auto format = texel_format(impl.access)) {
-                    impl.view.emplace(*gpu.device,
-                                      vk::BufferViewCreateInfo({}, **impl.buffer, *format, 0, VK_WHOLE_SIZE));
-                }
-            });
+    guarded(
+        fmt::format("allocating buffer '{}' of {} bytes ({} bytes are allocated)", impl.name, impl.bytes,
+                    gpu.allocated),
+        [&] {
+            const bool as_storage = gpu.policy.texels_as_storage;
+            impl.buffer.emplace(*gpu.device, vk::BufferCreateInfo({}, impl.bytes, usage_of(impl.access, as_storage)));
+            Allocation allocation = allocate(gpu, *impl.buffer, types);
+            const MemoryType& type = gpu.facts.memory[allocation.type];
+            impl.heap = type.heap;
+            impl.memory.emplace(std::move(allocation.memory));
+            gpu.allocated += impl.bytes;
+            gpu.heap_in_use[impl.heap] += impl.bytes;
+            gpu.peak = std::max(gpu.peak, gpu.allocated);
+            impl.buffer->bindMemory(**impl.memory, 0);
+            name_object(gpu, *impl.buffer, impl.name);
+            if (gpu.policy.maps_buffers && type.mappable) {
+                impl.mapped = static_cast<std::byte*>(impl.memory->mapMemory(0, VK_WHOLE_SIZE));
+                impl.cached = type.cached;
+            }
+            if (const auto format = texel_format(impl.access); format && !as_storage) {
+                impl.view.emplace(*gpu.device, vk::BufferViewCreateInfo({}, **impl.buffer, *format, 0, VK_WHOLE_SIZE));
+            }
+        });
     if (impl.mapped) {
         std::memset(impl.mapped, 0, impl.bytes);
     } else {

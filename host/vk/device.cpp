@@ -224,18 +224,31 @@ VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT
 
 }  // namespace
 
-std::vector<vk::DescriptorSetLayoutBinding> layout_bindings() {
-    std::vector<vk::DescriptorSetLayoutBinding> bindings;
-    const auto add = [&](std::uint32_t binding, vk::DescriptorType type) {
-        bindings.emplace_back(binding, type, 1, vk::ShaderStageFlagBits::eCompute);
-    };
-    for (const BoundBuffer& row : bound_buffers) {
-        const auto binding = std::uint32_t(row.binding);
-        if (row.access == Access::uniform) add(binding, vk::DescriptorType::eUniformBuffer);
-        if (has_storage(row.access)) add(binding, vk::DescriptorType::eStorageBuffer);
-        if (has_texels(row.access)) add(TEXELS_BINDING + binding, vk::DescriptorType::eUniformTexelBuffer);
+const Device::Impl::Layout& layout_of(Device::Impl& device, const std::vector<std::uint32_t>& used) {
+    std::vector<std::uint32_t> bindings = used;
+    if (device.policy.one_set) {
+        bindings.clear();
+        for (const BoundBuffer& row : bound_buffers) {
+            const auto binding = std::uint32_t(row.binding);
+            if (row.access == Access::uniform || has_storage(row.access)) bindings.push_back(binding);
+            if (has_texels(row.access)) bindings.push_back(TEXELS_BINDING + binding);
+        }
     }
-    return bindings;
+    const auto found = device.layouts.find(bindings);
+    if (found != device.layouts.end()) return found->second;
+    std::vector<vk::DescriptorSetLayoutBinding> rows;
+    for (const std::uint32_t binding : bindings) {
+        const bool uniform = binding < TEXELS_BINDING && bound_buffer(Binding(binding)).access == Access::uniform;
+        const vk::DescriptorType type = binding >= TEXELS_BINDING ? vk::DescriptorType::eUniformTexelBuffer
+                                        : uniform                 ? vk::DescriptorType::eUniformBuffer
+                                                                  : vk::DescriptorType::eStorageBuffer;
+        rows.emplace_back(binding, type, 1, vk::ShaderStageFlagBits::eCompute);
+    }
+    vk::raii::DescriptorSetLayout set(*device.device, vk::DescriptorSetLayoutCreateInfo({}, rows));
+    const vk::DescriptorSetLayout sets = *set;
+    const vk::PushConstantRange push(vk::ShaderStageFlagBits::eCompute, 0, sizeof(gpu::Launch));
+    vk::raii::PipelineLayout pipeline(*device.device, vk::PipelineLayoutCreateInfo({}, sets, push));
+    return device.layouts.try_emplace(bindings, std::move(rows), std::move(set), std::move(pipeline)).first->second;
 }
 
 void guarded(const std::string& doing, const std::function<void()>& work) {
@@ -368,7 +381,10 @@ Device::Device(const Options& options) : impl_(std::make_unique<Impl>()) {
             features.pNext = &feature;
             extensions.push_back(promise.extension);
         }
-        vk::DeviceCreateInfo info({}, queue, {}, extensions);
+        // Lanes that are switched off may fetch a texel behind the end. A load from storage may not, but for this.
+        vk::PhysicalDeviceFeatures core;
+        core.robustBufferAccess = impl.policy.texels_as_storage;
+        vk::DeviceCreateInfo info({}, queue, {}, extensions, &core);
         info.pNext = &features;
         impl.device.emplace(*impl.physical, info);
         impl.queue.emplace(*impl.device, family, 0);
@@ -378,11 +394,6 @@ Device::Device(const Options& options) : impl_(std::make_unique<Impl>()) {
         impl.transfers.emplace(std::move(buffers.front()));
         impl.transferred.emplace(*impl.device, vk::FenceCreateInfo());
         impl.pipelines.emplace(*impl.device, vk::PipelineCacheCreateInfo());
-        const std::vector<vk::DescriptorSetLayoutBinding> bindings = layout_bindings();
-        impl.set_layout.emplace(*impl.device, vk::DescriptorSetLayoutCreateInfo({}, bindings));
-        const vk::DescriptorSetLayout set_layout = **impl.set_layout;
-        const vk::PushConstantRange push(vk::ShaderStageFlagBits::eCompute, 0, sizeof(gpu::Launch));
-        impl.layout.emplace(*impl.device, vk::PipelineLayoutCreateInfo({}, set_layout, push));
     });
 }
 
@@ -403,8 +414,9 @@ std::uint64_t Device::largest_buffer(Access access) const {
     const DeviceFacts& facts = impl_->facts;
     std::uint64_t bytes = std::numeric_limits<std::uint64_t>::max();
     if (access == Access::uniform) bytes = facts.uniform_bytes;
-    if (has_storage(access)) bytes = facts.storage_bytes;
-    if (has_texels(access)) bytes = std::min(bytes, facts.texels * texel_bytes(access));
+    const bool as_storage = policy().texels_as_storage;
+    if (has_storage(access) || (has_texels(access) && as_storage)) bytes = facts.storage_bytes;
+    if (has_texels(access) && !as_storage) bytes = std::min(bytes, facts.texels * texel_bytes(access));
     return bytes;
 }
 

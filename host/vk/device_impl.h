@@ -36,13 +36,20 @@ struct Device::Impl {
     };
     Staging staging;
     std::optional<vk::raii::PipelineCache> pipelines;
-    // All kernels have the same bindings, so that those of the same words and specialization can share a pipeline:
-    // integrators of one scene differ in a few kernels alone.
-    std::optional<vk::raii::DescriptorSetLayout> set_layout;
-    std::optional<vk::raii::PipelineLayout> layout;
-    // By the hash of the words and the specialization.
-    std::map<std::pair<std::uint64_t, std::map<std::uint32_t, std::uint32_t>>, std::shared_ptr<vk::raii::Pipeline>>
-        made;
+    /// Of a set with what a kernel uses, or with all buffers (DevicePolicy::one_set).
+    struct Layout {
+        std::vector<vk::DescriptorSetLayoutBinding> bindings;
+        vk::raii::DescriptorSetLayout set;
+        vk::raii::PipelineLayout pipeline;
+    };
+    std::map<std::vector<std::uint32_t>, Layout> layouts;  // by its bindings
+    struct Pipeline {
+        const Layout* layout = nullptr;
+        std::optional<vk::raii::Pipeline> pipeline;
+    };
+    // By the hash of the words and the specialization. Kernels that agree in them share a pipeline: integrators of one
+    // scene differ in a few kernels alone.
+    std::map<std::pair<std::uint64_t, std::map<std::uint32_t, std::uint32_t>>, std::shared_ptr<Pipeline>> made;
     DeviceFacts facts;
     DevicePolicy policy;
     vk::PhysicalDeviceLimits limits;
@@ -54,8 +61,8 @@ struct Device::Impl {
     std::vector<std::string> messages;
 };
 
-/// Of the one layout that all kernels have: every buffer's.
-std::vector<vk::DescriptorSetLayoutBinding> layout_bindings();
+/// The layout for a kernel with those bindings; made where no kernel had it before.
+const Device::Impl::Layout& layout_of(Device::Impl& device, const std::vector<std::uint32_t>& bindings);
 
 /// Runs `work` and turns Vulkan's exceptions into Error: lost device, memory, anything else internal.
 /// `doing` completes the line: "Vulkan failed while <doing>".

@@ -1,8 +1,10 @@
 #include "vk/kernel.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -11,8 +13,10 @@
 #include "vk/buffer_impl.h"
 #include "vk/device_impl.h"
 #include "vk/fold.h"
+#include "vk/loops.h"
 #include "vk/reconvergence.h"
 #include "vk/spirv.h"
+#include "vk/texels.h"
 
 namespace vkcppm {
 namespace {
@@ -33,24 +37,33 @@ Specialization of_module(std::span<const std::uint32_t> spirv, const Specializat
 }  // namespace
 
 struct Bindings::Impl {
+    using Layout = Device::Impl::Layout;
+    struct Bound {
+        vk::Buffer buffer;
+        vk::BufferView view;
+    };
+    /// All that is bound in a set, and how often that was changed.
+    struct Set {
+        std::array<Bound, bound_buffers.size()> bound{};
+        std::uint64_t changes = 1;
+    };
+    /// Descriptor sets of a layout, one for each of those, and the change after which it was written.
+    struct Written {
+        vk::raii::DescriptorPool pool;
+        std::vector<vk::raii::DescriptorSet> sets;
+        std::vector<std::uint64_t> changes;
+    };
     Device* device = nullptr;
-    std::optional<vk::raii::DescriptorPool> pool;
-    std::vector<vk::raii::DescriptorSet> sets;
+    std::vector<Set> sets;
+    std::map<const Layout*, Written> written;
+
+    vk::DescriptorSet set_for(const Layout& layout, std::uint32_t index);
+    Written allocated(const Layout& layout) const;
 };
 
 Bindings::Bindings(Device& device, std::uint32_t sets) : impl_(std::make_unique<Impl>()) {
-    guarded("creating the descriptor sets", [&] {
-        Device::Impl& impl = device.impl();
-        impl_->device = &device;
-        std::map<vk::DescriptorType, std::uint32_t> counts;
-        for (const vk::DescriptorSetLayoutBinding& binding : layout_bindings()) ++counts[binding.descriptorType];
-        std::vector<vk::DescriptorPoolSize> sizes;
-        for (const auto& [type, count] : counts) sizes.emplace_back(type, count * sets);
-        impl_->pool.emplace(*impl.device, vk::DescriptorPoolCreateInfo(
-                                              vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, sets, sizes));
-        const std::vector<vk::DescriptorSetLayout> layouts(sets, **impl.set_layout);
-        impl_->sets = vk::raii::DescriptorSets(*impl.device, vk::DescriptorSetAllocateInfo(**impl_->pool, layouts));
-    });
+    impl_->device = &device;
+    impl_->sets.resize(sets);
 }
 
 Bindings::~Bindings() = default;
@@ -62,32 +75,59 @@ void Bindings::bind(Binding binding, const Buffer& buffer) {
 }
 
 void Bindings::bind(Binding binding, const Buffer& buffer, std::uint32_t set) {
-    const vk::DescriptorSet written = *impl_->sets.at(set);
     const auto& source = buffer.impl();
-    const Access access = bound_buffer(binding).access;
-    assert(access == source.access);
-    const vk::DescriptorBufferInfo info(**source.buffer, 0, VK_WHOLE_SIZE);
+    assert(bound_buffer(binding).access == source.access);
+    Impl::Set& of = impl_->sets.at(set);
+    of.bound[std::size_t(binding)] = {**source.buffer, source.view ? **source.view : vk::BufferView()};
+    ++of.changes;
+}
+
+/// With room for all sets.
+Bindings::Impl::Written Bindings::Impl::allocated(const Layout& layout) const {
+    const auto count = std::uint32_t(sets.size());
+    std::map<vk::DescriptorType, std::uint32_t> counts;
+    for (const vk::DescriptorSetLayoutBinding& binding : layout.bindings) counts[binding.descriptorType] += count;
+    std::vector<vk::DescriptorPoolSize> sizes;
+    for (const auto& [type, of_type] : counts) sizes.emplace_back(type, of_type);
+    std::optional<Written> made;
+    guarded("creating descriptor sets", [&] {
+        const vk::raii::Device& gpu = *device->impl().device;
+        vk::raii::DescriptorPool pool(
+            gpu, vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, count, sizes));
+        const std::vector<vk::DescriptorSetLayout> layouts(count, *layout.set);
+        std::vector<vk::raii::DescriptorSet> all =
+            vk::raii::DescriptorSets(gpu, vk::DescriptorSetAllocateInfo(*pool, layouts));
+        made = Written{std::move(pool), std::move(all), std::vector<std::uint64_t>(count)};
+    });
+    return std::move(*made);
+}
+
+/// What is bound in a set, as a kernel of that layout has it.
+vk::DescriptorSet Bindings::Impl::set_for(const Layout& layout, std::uint32_t index) {
+    auto found = written.find(&layout);
+    if (found == written.end()) found = written.emplace(&layout, allocated(layout)).first;
+    const Set& of = sets.at(index);
+    const vk::DescriptorSet set = *found->second.sets[index];
+    if (std::exchange(found->second.changes[index], of.changes) == of.changes) return set;
+    std::vector<vk::DescriptorBufferInfo> infos;
+    infos.reserve(layout.bindings.size());
     std::vector<vk::WriteDescriptorSet> writes;
-    const auto number = std::uint32_t(binding);
-    if (access == Access::uniform) {
-        writes.emplace_back(written, number, 0, 1, vk::DescriptorType::eUniformBuffer, nullptr, &info);
+    for (const vk::DescriptorSetLayoutBinding& row : layout.bindings) {
+        const Bound& bound = of.bound[row.binding % TEXELS_BINDING];
+        if (!bound.buffer) continue;
+        infos.emplace_back(bound.buffer, 0, VK_WHOLE_SIZE);
+        const bool is_view = row.descriptorType == vk::DescriptorType::eUniformTexelBuffer;
+        writes.emplace_back(set, row.binding, 0, 1, row.descriptorType, nullptr, is_view ? nullptr : &infos.back(),
+                            is_view ? &bound.view : nullptr);
     }
-    if (has_storage(access)) {
-        writes.emplace_back(written, number, 0, 1, vk::DescriptorType::eStorageBuffer, nullptr, &info);
-    }
-    vk::BufferView view;
-    if (has_texels(access)) {
-        view = **source.view;
-        writes.emplace_back(written, TEXELS_BINDING + number, 0, 1, vk::DescriptorType::eUniformTexelBuffer, nullptr,
-                            nullptr, &view);
-    }
-    impl_->device->impl().device->updateDescriptorSets(writes, {});
+    device->impl().device->updateDescriptorSets(writes, {});
+    return set;
 }
 
 struct Kernel::Impl {
     std::string name;
     std::uint32_t workgroup = 64;
-    std::shared_ptr<vk::raii::Pipeline> pipeline;
+    std::shared_ptr<Device::Impl::Pipeline> made;
 };
 
 Kernel::Kernel(Device& device, std::string name, std::span<const std::uint32_t> spirv,
@@ -96,11 +136,16 @@ Kernel::Kernel(Device& device, std::string name, std::span<const std::uint32_t> 
     impl_->name = std::move(name);
     impl_->workgroup = specialization.at(SPEC_WORKGROUP);
     const Specialization own = of_module(spirv, specialization);
-    std::shared_ptr<vk::raii::Pipeline>& made = device.impl().made[{fnv1a_of(spirv), own}];
+    std::shared_ptr<Device::Impl::Pipeline>& made = device.impl().made[{fnv1a_of(spirv), own}];
     if (!made) {
         guarded(fmt::format("creating kernel '{}'", impl_->name), [&] {
             auto& gpu = *device.impl().device;
-            const std::vector<std::uint32_t> words = with_promise(folded(spirv, own), device.policy().reconvergence);
+            const DevicePolicy& policy = device.policy();
+            std::vector<std::uint32_t> words = folded(spirv, own);
+            if (policy.texels_as_storage) words = with_storage_for_texels(words);
+            if (policy.closes_loops) words = with_loops_closed(words);
+            words = with_promise(words, policy.reconvergence);
+            const Device::Impl::Layout& layout = layout_of(device.impl(), bindings_of(words));
             const vk::raii::ShaderModule module(gpu, vk::ShaderModuleCreateInfo({}, words));
             std::vector<vk::SpecializationMapEntry> entries;
             std::vector<std::uint32_t> values;
@@ -112,12 +157,15 @@ Kernel::Kernel(Device& device, std::string name, std::span<const std::uint32_t> 
                                               values.size() * sizeof(values[0]), values.data());
             const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
                                                           &info);
-            made = std::make_shared<vk::raii::Pipeline>(
-                gpu, *device.impl().pipelines, vk::ComputePipelineCreateInfo({}, stage, **device.impl().layout));
-            name_object(device.impl(), *made, impl_->name);
+            auto pipeline = std::make_shared<Device::Impl::Pipeline>();
+            pipeline->layout = &layout;
+            pipeline->pipeline.emplace(gpu, *device.impl().pipelines,
+                                       vk::ComputePipelineCreateInfo({}, stage, *layout.pipeline));
+            name_object(device.impl(), *pipeline->pipeline, impl_->name);
+            made = std::move(pipeline);
         });
     }
-    impl_->pipeline = made;
+    impl_->made = made;
 }
 
 Kernel::~Kernel() = default;
@@ -129,6 +177,8 @@ const std::string& Kernel::name() const { return impl_->name; }
 struct Commands::Impl {
     Device* device = nullptr;
     const Bindings* bindings = nullptr;
+    std::uint32_t set = 0;    // of the launches that follow
+    vk::DescriptorSet bound;  // what the last of them was with
     std::optional<vk::raii::CommandBuffer> commands;
     std::optional<vk::raii::Fence> fence;
     std::vector<vk::raii::QueryPool> stamps;  // one more where a submission has more launches than any before
@@ -152,6 +202,7 @@ Commands::~Commands() = default;
 void Commands::begin() {
     guarded("recording commands", [&] {
         impl_->launched.clear();
+        impl_->bound = nullptr;
         impl_->stamped = 0;
         impl_->commands->reset();
         impl_->commands->begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
@@ -160,10 +211,7 @@ void Commands::begin() {
     });
 }
 
-void Commands::use(std::uint32_t set) {
-    const vk::DescriptorSet used = *impl_->bindings->impl().sets.at(set);
-    impl_->commands->bindDescriptorSets(vk::PipelineBindPoint::eCompute, **impl_->device->impl().layout, 0, used, {});
-}
+void Commands::use(std::uint32_t set) { impl_->set = set; }
 
 /// Takes the time once all kernels before have ended. A stamp before them could be taken while the driver still holds
 /// back the barrier in front of a launch, whose time would then count for two.
@@ -204,8 +252,13 @@ template <typename Dispatch> void Commands::record(const Kernel& kernel, const g
     using Access = vk::AccessFlagBits;
 
     if (takes_labels) commands.beginDebugUtilsLabelEXT(vk::DebugUtilsLabelEXT(kernel.name().c_str()));
-    commands.bindPipeline(vk::PipelineBindPoint::eCompute, **kernel.impl().pipeline);
-    commands.pushConstants<gpu::Launch>(**impl_->device->impl().layout, vk::ShaderStageFlagBits::eCompute, 0, push);
+    const Device::Impl::Pipeline& made = *kernel.impl().made;
+    const vk::DescriptorSet set = impl_->bindings->impl().set_for(*made.layout, impl_->set);
+    if (std::exchange(impl_->bound, set) != set) {
+        commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *made.layout->pipeline, 0, set, {});
+    }
+    commands.bindPipeline(vk::PipelineBindPoint::eCompute, **made.pipeline);
+    commands.pushConstants<gpu::Launch>(*made.layout->pipeline, vk::ShaderStageFlagBits::eCompute, 0, push);
     dispatch(commands);
     const vk::MemoryBarrier barrier(Access::eShaderWrite,
                                     Access::eShaderRead | Access::eShaderWrite | Access::eIndirectCommandRead);

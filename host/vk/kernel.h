@@ -1,5 +1,5 @@
 #pragma once
-// Compute pipelines over the one descriptor set of shaders/shared/buffers.h, and launches of them.
+// Compute pipelines over the buffers of shaders/shared/buffers.h, and launches of them.
 
 #include <cstdint>
 #include <memory>
@@ -15,7 +15,8 @@ namespace vkcppm {
 
 class Device;
 
-/// Descriptor sets of one layout: which buffer stands at which binding. Rebinding needs an idle device.
+/// Which buffer stands at which binding, several times over. Their descriptor sets are made at the first launch that
+/// needs them. Rebinding needs an idle device.
 class Bindings {
 public:
     explicit Bindings(Device& device, std::uint32_t sets = 1);
@@ -25,7 +26,7 @@ public:
 
     std::uint32_t sets() const;
 
-    /// Binds it in every set or in one, and where kernels read it as texels its view. Asserts that the buffer was made
+    /// Binds it in every set or in one. Asserts that the buffer was made
     /// for a binding of that access. It must outlive every launch.
     void bind(Binding binding, const Buffer& buffer);
     void bind(Binding binding, const Buffer& buffer, std::uint32_t set);
@@ -71,7 +72,7 @@ public:
     Commands(const Commands&) = delete;
     Commands& operator=(const Commands&) = delete;
 
-    /// Launches that follow are with the first descriptor set, until use() names another.
+    /// Launches that follow are with the first set of buffers, until use() names another.
     void begin();
     void use(std::uint32_t set);
     /// At least `invocations` invocations in whole work groups, folded into y beyond 65,535 groups.

@@ -27,6 +27,16 @@ std::uint32_t bound(bool (*has)(Access)) {
     return std::uint32_t(std::ranges::count_if(bound_buffers, has, &BoundBuffer::access));
 }
 
+bool has_room_for_all(const DeviceFacts& facts) {
+    const std::uint32_t storage = bound(has_storage), texels = bound(has_texels);
+    return facts.storage_buffers >= storage && facts.texel_buffers >= texels &&
+           facts.resources >= storage + texels + kernel_needs.uniform;
+}
+
+bool has_too_few_texels(const DeviceFacts& facts) {
+    return facts.texels < least_texels || facts.texel_buffers < kernel_needs.texels;
+}
+
 std::uint64_t heap_bytes(const DeviceFacts& facts, std::uint32_t type) {
     return facts.heaps.at(facts.memory.at(type).heap);
 }
@@ -73,24 +83,19 @@ std::string lacking(const DeviceFacts& facts) {
     // The traversal goes on while any lane of a SIMD group needs it.
     if (!facts.ballots) return "subgroup ballots in compute shaders are needed";
     if (!facts.computes) return "a compute queue is needed";
-    // All kernels have one set of all buffers (shaders/shared/buffers.h).
-    const std::uint32_t storage = bound(has_storage), texel = bound(has_texels),
-                        uniform = bound([](Access access) { return access == Access::uniform; });
+    const bool as_storage = has_too_few_texels(facts);
+    const std::uint32_t storage = as_storage ? kernel_needs.as_storage : kernel_needs.storage;
     if (facts.storage_buffers < storage) {
-        return fmt::format("{} storage buffers a stage, {} are needed", facts.storage_buffers, storage);
+        const std::string why = as_storage ? fmt::format(", as {} texels in each of {} buffers are too few",
+                                                         facts.texels, facts.texel_buffers)
+                                           : "";
+        return fmt::format("{} storage buffers a stage, {} are needed{}", facts.storage_buffers, storage, why);
     }
-    if (facts.texel_buffers < texel) {
-        return fmt::format("{} texel buffers a stage, {} are needed", facts.texel_buffers, texel);
+    if (facts.uniform_buffers < kernel_needs.uniform) {
+        return fmt::format("{} uniform buffers a stage, {} are needed", facts.uniform_buffers, kernel_needs.uniform);
     }
-    if (facts.uniform_buffers < uniform) {
-        return fmt::format("{} uniform buffers a stage, {} are needed", facts.uniform_buffers, uniform);
-    }
-    if (facts.resources < storage + texel + uniform) {
-        return fmt::format("{} resources a stage, {} are needed", facts.resources, storage + texel + uniform);
-    }
-    if (facts.texels < least_texels) {
-        return fmt::format("{} texels in a buffer, {} are needed", facts.texels, least_texels);
-    }
+    const std::uint32_t all = storage + kernel_needs.uniform + (as_storage ? 0 : kernel_needs.texels);
+    if (facts.resources < all) return fmt::format("{} resources a stage, {} are needed", facts.resources, all);
     if (facts.storage_bytes < least_storage_bytes) {
         return fmt::format("{} bytes in a storage buffer, {} are needed", facts.storage_bytes, least_storage_bytes);
     }
@@ -113,6 +118,9 @@ DevicePolicy policy_of(const DeviceFacts& facts, std::uint32_t threads, std::opt
     policy.forced = forced.has_value();
     const bool cpu = policy.way == Way::cpu;
 
+    policy.texels_as_storage = has_too_few_texels(facts);
+    policy.closes_loops = policy.texels_as_storage;
+    policy.one_set = !policy.texels_as_storage && has_room_for_all(facts);
     policy.maps_buffers = forced ? cpu : sees_the_largest_heap(facts);
     policy.buffer_memory = memory_by(facts, [&](const MemoryType& type) -> std::optional<int> {
         if (type.device_local) return type.mappable == policy.maps_buffers ? 0 : 1;
@@ -147,9 +155,10 @@ DevicePolicy policy_of(const DeviceFacts& facts, std::uint32_t threads, std::opt
 }
 
 std::string text_of(const DevicePolicy& policy) {
-    return fmt::format("{}{}: buffers {}, {} lanes, {}, {} steps", way_names[std::size_t(policy.way)],
+    return fmt::format("{}{}: buffers {}{}, {} lanes, {}, {} steps", way_names[std::size_t(policy.way)],
                        policy.forced ? fmt::format(" ({})", way_variable) : "",
-                       policy.maps_buffers ? "mapped" : "through staging copies", policy.busy_lanes,
+                       policy.maps_buffers ? "mapped" : "through staging copies",
+                       policy.texels_as_storage ? ", texels as storage" : "", policy.busy_lanes,
                        policy.tries_forms ? "forms of kernels tried" : "one form of kernels", policy.step_budget);
 }
 

@@ -54,6 +54,13 @@ struct DeviceFacts {
     std::vector<MemoryType> memory;
 };
 
+/// Most buffers that any kernel has of a kind (shaders/shared/buffers.h).
+struct KernelNeeds {
+    std::uint32_t uniform = 1, storage = 10, texels = 19;
+    std::uint32_t as_storage = 25;  // storage, where texels are storage as well
+};
+inline constexpr KernelNeeds kernel_needs;
+
 /// Why the kernels cannot run on a device, with what they need of it; empty where they can.
 std::string lacking(const DeviceFacts& facts);
 
@@ -76,6 +83,19 @@ struct DevicePolicy {
     std::uint64_t memory_bytes = 0;
     /// That memory is the host's, and no more of it is there than the host has left.
     bool memory_of_host = false;
+
+    /// Kernels read as storage what they read elsewhere as texels, of which the device allows too few in a buffer or
+    /// too few buffers (vk/texels.h).
+    bool texels_as_storage = false;
+
+    /// What loops compute is handed on lane by lane (vk/loops.h): asked for where texels are storage, for it is there
+    /// that SwiftShader's pictures were wrong without.
+    bool closes_loops = false;
+
+    /// One descriptor set has all buffers, else a kernel has one of its own with what it uses. Mesa 22.3's lavapipe
+    /// compiles kernels again, for the parameters of the moment, where a set was bound since their last launch: `eye`
+    /// takes 1.2 times as long if that is before every launch and not once a submission.
+    bool one_set = true;
 
     /// Invocations that keep the device busy: work with a choice is cut into about as many.
     std::uint32_t busy_lanes = 0;

@@ -1,4 +1,4 @@
-// Every buffer of the one descriptor set, a row each. Allocation, the memory of --stats, checkpoints, hashes,
+// Every buffer that kernels have, a row each. Allocation, the memory of --stats, checkpoints, hashes,
 // descriptors and the declarations of the kernels follow from the rows.
 //
 // ROW(number, name, Element, per, entries, access, life, hashed)

@@ -59,6 +59,7 @@ const std::vector<Fault> faults = {
     {"LostAtTheFirstSubmission", "vkQueueSubmit 1 -4", 75, {"the device was lost while running kernels"}},
     {"LostInTheRender", "vkQueueSubmit 4 -4", 75, {"the device was lost while running kernels"}},
     {"LostWhileItIsWaitedFor", "vkWaitForFences 3 -4", 75, {"the device was lost while running kernels"}},
+    {"ThatDoesNothing", "idle", 75, {"does not run its kernels: 0 of 1 iterations are complete"}},
     {"MemoryForTheFirstBuffer",
      "vkAllocateMemory 1 -2",
      71,
@@ -68,7 +69,6 @@ const std::vector<Fault> faults = {
     {"MemoryForAKernel", "vkCreateComputePipelines 3 -2", 71, {"out of device memory while creating kernel '"}},
     {"AnErrorWithoutAName", "vkCreateComputePipelines 1 -13", 70, {"Vulkan failed while creating kernel '"}},
     {"ASmallDevice", "heap 0 200000", 71, {"the render needs ", "; it has 1 MB: "}},
-    {"FewTexels", "texels 0 65536", 69, {"no usable Vulkan device", "65536 texels in a buffer, 2097152 are needed"}},
 };
 
 INSTANTIATE_TEST_SUITE_P(, Faults, testing::ValuesIn(faults),
@@ -100,6 +100,8 @@ TEST_F(FaultLayer, ACardGivesTheSameBits) {
     EXPECT_EQ(hashes_on("card 8000000 4000000;texels 0 2097152"), seen)
         << "some buffers lie in the window, others do not, with as few texels as are asked for";
     EXPECT_EQ(hashes_on("card 0 268435456;stamps 0 36", "gpu"), seen) << "all of a card's way";
+    EXPECT_EQ(hashes_on("texels 0 65536"), seen) << "texels are read as storage";
+    EXPECT_EQ(hashes_on("card 300000000 60000000;stamps 0 36;texels 0 65536", "gpu"), seen) << "all that is small";
 }
 
 // A card whose window is full long before its memory.

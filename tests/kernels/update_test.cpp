@@ -309,9 +309,9 @@ TEST_F(FilmSum, ManyAdditionsDoNotStagnate) {
     Bindings bindings(plain_device());
     bindings.bind(Binding::params, parameters);
     std::map<Binding, Buffer> buffers;
-    for (const Binding binding :
-         {Binding::status, Binding::quantiles, Binding::hit_position, Binding::hit_weight, Binding::hit_emission,
-          Binding::gathered, Binding::pixels, Binding::tally, Binding::moments, Binding::film}) {
+    for (const Binding binding : {Binding::status, Binding::quantiles, Binding::hit_position, Binding::hit_weight,
+                                  Binding::hit_emission, Binding::gathered, Binding::pixels, Binding::tally,
+                                  Binding::moments, Binding::film, Binding::eye_paths, Binding::errors}) {
         bindings.bind(binding, buffers.emplace(binding, Buffer(plain_device(), binding, 4096)).first->second);
     }
     Buffer& emission = buffers.at(Binding::hit_emission);

@@ -93,11 +93,15 @@ TEST(Policy, WhatIsLackingIsSaid) {
         {"scalarBlockLayout", [](auto& f) { f.scalar_block_layout = false; }},
         {"ballots", [](auto& f) { f.ballots = false; }},
         {"compute queue", [](auto& f) { f.computes = false; }},
-        {"16 storage buffers a stage, ", [](auto& f) { f.storage_buffers = 16; }},
-        {"16 texel buffers a stage, ", [](auto& f) { f.texel_buffers = 16; }},
+        {"8 storage buffers a stage, 10 are needed", [](auto& f) { f.storage_buffers = 8; }},
+        {"24 storage buffers a stage, 25 are needed, as 65536 texels in each of 16 buffers are too few",
+         [](auto& f) {
+             f.storage_buffers = 24;
+             f.texel_buffers = 16;
+             f.texels = 65536;
+         }},
         {"0 uniform buffers a stage, ", [](auto& f) { f.uniform_buffers = 0; }},
-        {"48 resources a stage, ", [](auto& f) { f.resources = 48; }},
-        {"65536 texels in a buffer, ", [](auto& f) { f.texels = 65536; }},  // SwiftShader, older Adreno and Mali
+        {"24 resources a stage, ", [](auto& f) { f.resources = 24; }},
         {"1024 bytes in a storage buffer, ", [](auto& f) { f.storage_bytes = 1024; }},
         {"64 bytes in a uniform buffer, ", [](auto& f) { f.uniform_bytes = 64; }},
         {"work groups of 64, 128 are needed", [](auto& f) { f.group_invocations = 64; }},
@@ -108,6 +112,29 @@ TEST(Policy, WhatIsLackingIsSaid) {
         change.take(facts);
         EXPECT_NE(lacking(facts).find(change.told), std::string::npos) << change.told << ": " << lacking(facts);
     }
+}
+
+// SwiftShader, older Adreno and Mali: 65,536 texels in a buffer, as few as Vulkan permits. And a device with as few
+// buffers of them, and one with few storage buffers but texels of all kinds.
+TEST(Policy, FewTexelsAreReadAsStorage) {
+    DeviceFacts facts = facts_of(published[0]);
+    EXPECT_FALSE(policy_of(facts, 8).texels_as_storage);
+    EXPECT_TRUE(policy_of(facts, 8).one_set);
+    facts.texels = 65536;
+    EXPECT_EQ(lacking(facts), "");
+    EXPECT_TRUE(policy_of(facts, 8).texels_as_storage);
+    facts = facts_of(published[0]);
+    facts.texel_buffers = 16;
+    EXPECT_EQ(lacking(facts), "");
+    EXPECT_TRUE(policy_of(facts, 8).texels_as_storage);
+    EXPECT_FALSE(policy_of(facts, 8).one_set);
+    facts = facts_of(published[0]);
+    facts.storage_buffers = 16;
+    EXPECT_EQ(lacking(facts), "");
+    EXPECT_FALSE(policy_of(facts, 8).texels_as_storage);
+    EXPECT_FALSE(policy_of(facts, 8).one_set);
+    facts.storage_buffers = 32;  // lavapipe, which is slower by as many sets as kernels
+    EXPECT_TRUE(policy_of(facts, 8).one_set);
 }
 
 using Types = std::vector<std::uint32_t>;

@@ -1,5 +1,6 @@
 // A Vulkan layer that makes the device another one, as the environment says, one thing after another with ; between:
 //   VKCPPM_FAULT="vkQueueSubmit 3 -4"   the third call of the function and all after it return that VkResult
+//   VKCPPM_FAULT="idle"                 what is submitted is done at once, for nothing of it is
 //   VKCPPM_FAULT="heap 0 67108864"      every heap of memory has that many bytes
 //   VKCPPM_FAULT="full 3 65536"         from the third submission on there is room for so many bytes at once, no more
 //   VKCPPM_FAULT="card 0 268435456"     a card of its own: the host sees of its memory a window of so many bytes, or
@@ -7,12 +8,14 @@
 //                                       memory beside the window; 0: as many as there are
 //   VKCPPM_FAULT="stamps 0 36"          time stamps have so many bits and soon begin again at 0; 0: there are none
 //   VKCPPM_FAULT="texels 0 65536"       texel buffers hold so many
+//   VKCPPM_FAULT="statistics"           no fault: standard error gets what the driver's compiler says of each kernel
 // The program under test is the one that users have: it knows nothing of this.
 
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <iostream>
 #include <map>
 #include <sstream>
 #include <string>
@@ -56,13 +59,18 @@ struct Faults {
 };
 
 Faults faults;
-PFN_vkGetInstanceProcAddr next_instance_function = nullptr;  // of the one instance and the one device
-PFN_vkGetDeviceProcAddr next_device_function = nullptr;
+PFN_vkGetInstanceProcAddr next_instance_function = nullptr;  // of the newest instance: all of a process are alike
 PFN_vkGetPhysicalDeviceMemoryProperties next_memory_properties = nullptr;
 PFN_vkGetPhysicalDeviceProperties next_properties = nullptr;
 PFN_vkGetPhysicalDeviceQueueFamilyProperties next_queue_families = nullptr;
-VkDevice the_device = VK_NULL_HANDLE;
+struct NextDevice {
+    VkDevice device = VK_NULL_HANDLE;
+    PFN_vkGetDeviceProcAddr function = nullptr;
+};
+std::map<void*, NextDevice> devices;  // by what a device, and its queues, begin with
 int submissions = 0;
+
+void* key_of(const void* handle) { return *static_cast<void* const*>(handle); }
 
 /// A type of memory of a card: which of the driver's it is, where all are one heap, and how much there is of it.
 struct CardType {
@@ -110,27 +118,42 @@ VkResult create_instance(const VkInstanceCreateInfo* info, const VkAllocationCal
 VkResult create_device(VkPhysicalDevice physical, const VkDeviceCreateInfo* info,
                        const VkAllocationCallbacks* allocator, VkDevice* device) {
     const auto* link = take_link<VkLayerDeviceCreateInfo>(info, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO);
-    next_device_function = link->pfnNextGetDeviceProcAddr;
+    const PFN_vkGetDeviceProcAddr function = link->pfnNextGetDeviceProcAddr;
     const auto create =
         reinterpret_cast<PFN_vkCreateDevice>(link->pfnNextGetInstanceProcAddr(VK_NULL_HANDLE, "vkCreateDevice"));
-    const VkResult result = create(physical, info, allocator, device);
-    the_device = *device;
+    VkDeviceCreateInfo real = *info;
+    std::vector<const char*> extensions(info->ppEnabledExtensionNames,
+                                        info->ppEnabledExtensionNames + info->enabledExtensionCount);
+    VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR statistics{
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR, const_cast<void*>(info->pNext),
+        VK_TRUE};
+    if (faults.find("statistics")) {
+        extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
+        real.enabledExtensionCount = std::uint32_t(extensions.size());
+        real.ppEnabledExtensionNames = extensions.data();
+        real.pNext = &statistics;
+    }
+    const VkResult result = create(physical, &real, allocator, device);
+    if (result == VK_SUCCESS) devices[key_of(*device)] = {*device, function};
     return result;
 }
 
-template <typename Function> Function next(const char* name) {
-    return reinterpret_cast<Function>(next_device_function(the_device, name));
+/// The driver's function of that name, for a device or one of its queues.
+template <typename Function> Function next(const void* handle, const char* name) {
+    const NextDevice& of = devices.at(key_of(handle));
+    return reinterpret_cast<Function>(of.function(of.device, name));
 }
 
 VkResult queue_submit(VkQueue queue, std::uint32_t count, const VkSubmitInfo* submits, VkFence fence) {
     ++submissions;
     if (const Fault* fault = faults.strikes("vkQueueSubmit")) return VkResult(fault->value);
-    return next<PFN_vkQueueSubmit>("vkQueueSubmit")(queue, count, submits, fence);
+    if (faults.find("idle")) count = 0;
+    return next<PFN_vkQueueSubmit>(queue, "vkQueueSubmit")(queue, count, submits, fence);
 }
 
 VkResult wait_for_fences(VkDevice device, std::uint32_t count, const VkFence* fences, VkBool32 all,
                          std::uint64_t time) {
-    const VkResult result = next<PFN_vkWaitForFences>("vkWaitForFences")(device, count, fences, all, time);
+    const VkResult result = next<PFN_vkWaitForFences>(device, "vkWaitForFences")(device, count, fences, all, time);
     const Fault* fault = faults.strikes("vkWaitForFences");
     return fault ? VkResult(fault->value) : result;
 }
@@ -150,35 +173,76 @@ VkResult allocate_memory(VkDevice device, const VkMemoryAllocateInfo* info, cons
         if (in_use + info->allocationSize > type->second.bytes) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
         real.memoryTypeIndex = type->second.real;
     }
-    const VkResult result = next<PFN_vkAllocateMemory>("vkAllocateMemory")(device, &real, allocator, memory);
+    const VkResult result = next<PFN_vkAllocateMemory>(device, "vkAllocateMemory")(device, &real, allocator, memory);
     if (result == VK_SUCCESS && type != card_types.end()) card_memory[*memory] = {type->first, info->allocationSize};
     return result;
 }
 
 void free_memory(VkDevice device, VkDeviceMemory memory, const VkAllocationCallbacks* allocator) {
     card_memory.erase(memory);
-    next<PFN_vkFreeMemory>("vkFreeMemory")(device, memory, allocator);
+    next<PFN_vkFreeMemory>(device, "vkFreeMemory")(device, memory, allocator);
 }
 
 VkResult map_memory(VkDevice device, VkDeviceMemory memory, VkDeviceSize offset, VkDeviceSize size,
                     VkMemoryMapFlags flags, void** data) {
     const auto card = card_memory.find(memory);
     if (card != card_memory.end() && !card_types[card->second.type].mappable) return VK_ERROR_MEMORY_MAP_FAILED;
-    return next<PFN_vkMapMemory>("vkMapMemory")(device, memory, offset, size, flags, data);
+    return next<PFN_vkMapMemory>(device, "vkMapMemory")(device, memory, offset, size, flags, data);
 }
 
 void get_buffer_memory_requirements(VkDevice device, VkBuffer buffer, VkMemoryRequirements* needed) {
-    next<PFN_vkGetBufferMemoryRequirements>("vkGetBufferMemoryRequirements")(device, buffer, needed);
+    next<PFN_vkGetBufferMemoryRequirements>(device, "vkGetBufferMemoryRequirements")(device, buffer, needed);
     const std::uint32_t real = needed->memoryTypeBits;
     for (const auto& [type, card] : card_types) needed->memoryTypeBits |= (real >> card.real & 1) << type;
+}
+
+/// A line for each of its executables: its name, and what is counted of it, with ; between.
+void print_statistics(VkDevice device, VkPipeline pipeline, const char* name) {
+    const VkPipelineInfoKHR of{VK_STRUCTURE_TYPE_PIPELINE_INFO_KHR, nullptr, pipeline};
+    const auto executables =
+        next<PFN_vkGetPipelineExecutablePropertiesKHR>(device, "vkGetPipelineExecutablePropertiesKHR");
+    const auto counted = next<PFN_vkGetPipelineExecutableStatisticsKHR>(device, "vkGetPipelineExecutableStatisticsKHR");
+    std::uint32_t count = 0;
+    executables(device, &of, &count, nullptr);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const VkPipelineExecutableInfoKHR one{VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR, nullptr, pipeline, i};
+        std::uint32_t values = 0;
+        counted(device, &one, &values, nullptr);
+        VkPipelineExecutableStatisticKHR empty{};
+        empty.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR;
+        std::vector<VkPipelineExecutableStatisticKHR> all(values, empty);
+        counted(device, &one, &values, all.data());
+        std::ostringstream line;
+        line << "statistics of " << name << ":";
+        for (const VkPipelineExecutableStatisticKHR& each : all) {
+            line << ' ' << each.name << '=';
+            each.format == VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_FLOAT64_KHR ? line << each.value.f64
+                                                                               : line << each.value.u64;
+            line << ';';
+        }
+        std::cerr << line.str() + '\n';
+    }
 }
 
 VkResult create_compute_pipelines(VkDevice device, VkPipelineCache cache, std::uint32_t count,
                                   const VkComputePipelineCreateInfo* infos, const VkAllocationCallbacks* allocator,
                                   VkPipeline* pipelines) {
     if (const Fault* fault = faults.strikes("vkCreateComputePipelines")) return VkResult(fault->value);
-    return next<PFN_vkCreateComputePipelines>("vkCreateComputePipelines")(device, cache, count, infos, allocator,
-                                                                          pipelines);
+    std::vector<VkComputePipelineCreateInfo> real(infos, infos + count);
+    if (faults.find("statistics")) {
+        for (VkComputePipelineCreateInfo& info : real) info.flags |= VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR;
+    }
+    return next<PFN_vkCreateComputePipelines>(device, "vkCreateComputePipelines")(device, cache, count, real.data(),
+                                                                                  allocator, pipelines);
+}
+
+/// The program names each pipeline once it is made.
+VkResult set_object_name(VkDevice device, const VkDebugUtilsObjectNameInfoEXT* info) {
+    if (faults.find("statistics") && info->objectType == VK_OBJECT_TYPE_PIPELINE) {
+        print_statistics(device, VkPipeline(info->objectHandle), info->pObjectName);
+    }
+    const auto set = next<PFN_vkSetDebugUtilsObjectNameEXT>(device, "vkSetDebugUtilsObjectNameEXT");
+    return set ? set(device, info) : VK_SUCCESS;
 }
 
 /// Hides from the host the memory that is both the device's and the host's, and adds memory of the host and a window.
@@ -233,14 +297,14 @@ VkResult create_query_pool(VkDevice device, const VkQueryPoolCreateInfo* info, c
                            VkQueryPool* pool) {
     const Fault* stamps = faults.find("stamps");
     if (stamps && stamps->value == 0) return VK_ERROR_INITIALIZATION_FAILED;
-    return next<PFN_vkCreateQueryPool>("vkCreateQueryPool")(device, info, allocator, pool);
+    return next<PFN_vkCreateQueryPool>(device, "vkCreateQueryPool")(device, info, allocator, pool);
 }
 
 /// The clock begins again 20 ms after the first stamp.
 VkResult get_query_pool_results(VkDevice device, VkQueryPool pool, std::uint32_t first, std::uint32_t count,
                                 std::size_t size, void* data, VkDeviceSize stride, VkQueryResultFlags flags) {
-    const VkResult result =
-        next<PFN_vkGetQueryPoolResults>("vkGetQueryPoolResults")(device, pool, first, count, size, data, stride, flags);
+    const VkResult result = next<PFN_vkGetQueryPoolResults>(device, "vkGetQueryPoolResults")(device, pool, first, count,
+                                                                                             size, data, stride, flags);
     const Fault* stamps = faults.find("stamps");
     auto* values = static_cast<std::uint64_t*>(data);
     if (!stamps || !(flags & VK_QUERY_RESULT_64_BIT) || stride != sizeof(*values)) return result;
@@ -267,6 +331,7 @@ PFN_vkVoidFunction own_function(const char* name) {
     OWN("vkMapMemory", map_memory)
     OWN("vkGetBufferMemoryRequirements", get_buffer_memory_requirements)
     OWN("vkCreateComputePipelines", create_compute_pipelines)
+    OWN("vkSetDebugUtilsObjectNameEXT", set_object_name)
     OWN("vkCreateQueryPool", create_query_pool)
     OWN("vkGetQueryPoolResults", get_query_pool_results)
 #undef OWN
@@ -279,7 +344,7 @@ extern "C" __attribute__((visibility("default"))) PFN_vkVoidFunction VKAPI_CALL 
                                                                                                     const char* name) {
     if (std::strcmp(name, "vkGetDeviceProcAddr") == 0) return reinterpret_cast<PFN_vkVoidFunction>(vkGetDeviceProcAddr);
     const PFN_vkVoidFunction own = own_function(name);
-    return own ? own : next_device_function(device, name);
+    return own ? own : devices.at(key_of(device)).function(device, name);
 }
 
 extern "C" __attribute__((visibility("default"))) PFN_vkVoidFunction VKAPI_CALL

@@ -1,6 +1,7 @@
 #pragma once
 // Where the project and what is built of it are. Only places.cpp is compiled with their names: no other file has to be
-// compiled again where they differ.
+// compiled again where they differ. The environment's VKCPPM_TEST_SOURCE and VKCPPM_TEST_FAILURES go before what was
+// compiled in, for test programs that run on another machine than the one that they were built on.
 
 #include <filesystem>
 #include <string>
