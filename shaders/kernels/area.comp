@@ -8,8 +8,8 @@
 // which Russian roulette ends: an unbiased estimate of the reciprocal (of the geometric series; Booth, "Unbiased Monte
 // Carlo estimation of the reciprocal of an integral", Nuclear Science and Engineering 156, 2007) that takes one line
 // where all is flat, and is 1 there without noise. m lines leave out (1 - f)^(m + 1) / f of it; their number grows with
-// the logarithm of the iteration, so that this vanishes, and that first discs, which are large and of which little may be
-// surface, do not bring noise that lasts.
+// the logarithm of the iteration, so that this vanishes, and that first discs, which are large and of which little may
+// be surface, do not bring noise that lasts.
 // Independent of photons and of earlier iterations: each hit has an estimate of its own, as a pixel at an edge sees
 // several surfaces.
 // Reads the scene, hits, pixels; writes PixelState::excess, and measures where one is unfinished. O(log triangles) a

@@ -116,7 +116,8 @@ void weigh(Receiver r, uint index, inout Gathered sum) {
         bool first = is_first_rough(flux);
         float half_area = q < 0.5 ? 2.0 * photon_weight(2.0 * q, first) : 0.0;
         float quarter = q < 0.25 ? 4.0 * photon_weight(4.0 * q, first) : 0.0;
-        bias += luminance(r.weight * (r.per_surface * counted + power * (INNER_BIAS * (half_area - quarter) - half_area)));
+        vec3 limit = power * (half_area - INNER_BIAS * (half_area - quarter));
+        bias += luminance(r.weight * (r.per_surface * counted - limit));
     }
     if (HAS_AOVS) {
         uint layer = layer_of(flux);

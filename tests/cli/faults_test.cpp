@@ -96,7 +96,7 @@ TEST_F(FaultLayer, ACardGivesTheSameBits) {
         return first + render({"--iterations", "6", "--resume", "a.checkpoint"});
     };
     const std::string seen = hashes_on("");
-    EXPECT_EQ(lines_of(seen).size(), 2 * (3 * 6 + 1));
+    EXPECT_EQ(lines_of(seen).size(), 2 * (3 * 7 + 1));
     EXPECT_EQ(hashes_on("card 8000000 4000000;texels 0 2097152"), seen)
         << "some buffers lie in the window, others do not, with as few texels as are asked for";
     EXPECT_EQ(hashes_on("card 0 268435456;stamps 0 36", "gpu"), seen) << "all of a card's way";

@@ -19,8 +19,8 @@
 namespace vkcppm::test {
 namespace {
 
-constexpr std::uint32_t iteration = 1;  // of the measures
-constexpr int terms = 2;                // of the series that are followed then
+constexpr std::uint32_t iteration = 511;  // of the measures
+constexpr int terms = 5;                  // of the series that are followed then
 
 /// What the estimate leaves of 1 / f: the sum of the first terms of its series.
 double of_terms(double share) { return (1.0 - std::pow(1.0 - share, terms)) / share; }
@@ -85,6 +85,9 @@ protected:
         const float length = float(radius * rig.flat.frame.scale);
         for (gpu::PixelState& state : states) state.radius2 = length * length;
         rig.integrator.buffer(Binding::pixels).upload(states);
+        gpu::Status status = rig.status();
+        status.completed = iteration;
+        rig.integrator.buffer(Binding::status).upload_value(status);
         const auto hits = rig.all<gpu::HitPosition>(Binding::hit_position);
         for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
             gpu::Params params = rig.integrator.params();
@@ -130,7 +133,7 @@ TEST_F(Area, OfASquareIsWhatLiesInIt) {
         }
         EXPECT_LT(std::abs(differences), 4.0 * std::sqrt(variances)) << "over all pixels";
         EXPECT_GT(inside, 20u);
-        EXPECT_GT(largest, 1.5) << "no disc that lies half beside the square";
+        EXPECT_GT(largest, 1.9) << "no disc that lies half beside the square";
     }
 }
 

@@ -325,7 +325,7 @@ TEST_F(Gather, BiasIsThatOfInnerDiscs) {
         for (std::size_t cell = 0; cell < 16; ++cell) ring[cell / 4] += luminance(found.cell_flux[cell]);
         const double disc = ring[0] + ring[1] + ring[2] + ring[3];
         const double half = 2.0 * (ring[0] + ring[1]), quarter = 4.0 * ring[0];
-        const double want = disc - half + (2.0 + std::sqrt(2.0)) * (half - quarter);
+        const double want = (1.0 + states[i].excess) * disc - half + (2.0 + std::sqrt(2.0)) * (half - quarter);
         ASSERT_NEAR(paths[i].bias, want, 1e-4 * disc) << where(i, *point, radius2) << ", " << found.count << " photons";
         compared += found.count > 8 ? 1 : 0;
     }
