@@ -212,6 +212,13 @@ std::vector<Soup> soups() {
             {"all in one place", 50, one_place}};
 }
 
+Scene made(const Soup& soup, Random& random) {
+    Scene scene;
+    add_material(scene, lambert(glm::vec3(0.5f)));
+    for (int i = 0; i < soup.triangles; ++i) soup.add(scene, i, random);
+    return scene;
+}
+
 /// Rays of every sort at the triangles: random, along axes with components of either zero, from a triangle's own
 /// plane, grazing, parallel, at vertices and at edges.
 std::vector<gpu::RayInput> rays_at(const Scene& scene, Random& random, std::size_t count) {
@@ -267,10 +274,7 @@ TEST_F(Trace, FindsTheNearestHitThatAllTrianglesHave) {
     Random random(10);
     for (const Soup& soup : soups()) {
         SCOPED_TRACE(soup.name);
-        Scene made;
-        add_material(made, lambert(glm::vec3(0.5f)));
-        for (int i = 0; i < soup.triangles; ++i) soup.add(made, i, random);
-        const FlatScene flat = flatten(made);
+        const FlatScene flat = flatten(made(soup, random));
         const Scene scene = as_uploaded(flat);
         const Embree embree(scene);
         const auto rays = rays_at(scene, random, 4000);
@@ -378,10 +382,7 @@ TEST_F(Trace, FindsWhetherThereIsAnythingOnTheWay) {
     Random random(14);
     for (const Soup& soup : soups()) {
         SCOPED_TRACE(soup.name);
-        Scene made;
-        add_material(made, lambert(glm::vec3(0.5f)));
-        for (int i = 0; i < soup.triangles; ++i) soup.add(made, i, random);
-        const FlatScene flat = flatten(made);
+        const FlatScene flat = flatten(made(soup, random));
         const Scene scene = as_uploaded(flat);
         const auto rays = rays_at(scene, random, 2000);
         std::vector<gpu::OcclusionInput> inputs;
