@@ -52,8 +52,8 @@ PngDepth parse_png_depth(const std::string& option, const std::string& text);   
 double parse_share(const std::string& option, const std::string& text);                    // 0.001 or 0.1 %; >= 0
 Bound parse_bound(const std::string& option, const std::string& text);                     // flip=0.05
 Extent parse_size(const std::string& option, const std::string& text);                     // 512x384
-double parse_moment(const std::string& option, const std::string& text);                   // the same, of any sign
 double parse_seconds(const std::string& option, const std::string& text);     // of 90, 90s, 2m, 1.5h or 500ms; > 0
+double parse_moment(const std::string& option, const std::string& text);      // the same, of any sign
 LiveAddress parse_live(const std::string& option, const std::string& text);   // HOST, HOST:PORT, [HOST] or [HOST]:PORT
 StopAt parse_stop_at(const std::string& option, const std::string& text);     // relmse_trimmed=0.0035
 Target parse_target(const std::string& option, const std::string& text);      // relmse=0.001, noise=2%

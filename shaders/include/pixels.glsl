@@ -14,6 +14,9 @@ const float RADIUS2_MIN = 1e-12;
 // leaves it below 2^31.
 const float MOST_PHOTONS = 1073741824.0;
 
+// About pi R^2 over the area of the surface in this iteration's disc; 1: it is not measured.
+float disc_per_surface(PixelState state) { return 1.0 + state.excess; }
+
 bool batch_is_full(PixelState state) { return float(state.total) >= min(state.batch, MOST_PHOTONS); }
 
 #endif

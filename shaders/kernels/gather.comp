@@ -72,7 +72,7 @@ Receiver receiver_of(uint pixel, HitPosition hit) {
     r.both_sides = gathers_both_sides(hit);
     PixelState state = pixels_at(pixel);
     r.radius2 = state.radius2;
-    r.per_surface = 1.0 + state.excess;
+    r.per_surface = disc_per_surface(state);
     r.inverse_radius = inversesqrt(r.radius2);
     tangents(r.normal, r.tangent, r.bitangent);
     r.tangent *= r.inverse_radius;

@@ -28,7 +28,7 @@ void main() {
     if (diffuse) {
         // L = W rho / pi * sum(power) / (A J), A = pi R^2 or the area of the surface in it; R as before this update.
         float inverse = params.inverse_paths / (PI * state.radius2);
-        estimate += hit_weight_at(pixel).weight * sum.flux * (inverse * (1.0 + state.excess));
+        estimate += hit_weight_at(pixel).weight * sum.flux * (inverse * disc_per_surface(state));
         if (HAS_ERRORS) bias = eye_paths[pixel].bias * inverse;
     }
     if (HAS_ERRORS) add_to_group(pixel, estimate, bias);

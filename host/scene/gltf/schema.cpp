@@ -497,9 +497,10 @@ std::vector<std::string> unsupported_extensions(const json& document, std::strin
     for (const json& name : names) {
         if (!name.is_string()) bad_scene(file, member, json_text(name), "it must hold strings");
         const auto& text = name.get_ref<const std::string&>();
-        const bool is_supported = std::ranges::find(supported_extensions, text) != std::end(supported_extensions);
-        const auto found = std::ranges::find(extensions_without_looks, text);
-        if (!is_supported && found == std::end(extensions_without_looks)) unsupported.push_back(json_text(name));
+        const auto is_among = [&](const auto& known) { return std::ranges::find(known, text) != std::end(known); };
+        if (!is_among(supported_extensions) && !is_among(extensions_without_looks)) {
+            unsupported.push_back(json_text(name));
+        }
     }
     return unsupported;
 }
