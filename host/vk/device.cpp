@@ -248,7 +248,8 @@ const Device::Impl::Layout& layout_of(Device::Impl& device, const std::vector<st
     const vk::DescriptorSetLayout sets = *set;
     const vk::PushConstantRange push(vk::ShaderStageFlagBits::eCompute, 0, sizeof(gpu::Launch));
     vk::raii::PipelineLayout pipeline(*device.device, vk::PipelineLayoutCreateInfo({}, sets, push));
-    return device.layouts.try_emplace(bindings, std::move(rows), std::move(set), std::move(pipeline)).first->second;
+    Device::Impl::Layout layout{std::move(rows), std::move(set), std::move(pipeline)};
+    return device.layouts.emplace(bindings, std::move(layout)).first->second;
 }
 
 void guarded(const std::string& doing, const std::function<void()>& work) {
