@@ -204,7 +204,7 @@ private:
                 }
             }
         }
-        const auto [first, last] = before.equal_range(blocks_[merge].label);
+        const auto exits = before.equal_range(blocks_[merge].label);
         std::unordered_map<Word, Word> handed_on;  // to the result of its phi
         std::vector<Step> phis;
         const auto replace = [&](Word& id) {
@@ -214,7 +214,7 @@ private:
                 phi = bound_++;
                 types_[phi] = types_[id];
                 Words words{0, types_[id], phi};
-                for (auto pair = first; pair != last; ++pair) {
+                for (auto pair = exits.first; pair != exits.second; ++pair) {
                     const bool is_exit = pair->second == blocks_[header].label;  // that is never taken
                     words.insert(words.end(), {is_exit ? null_of(types_[id]) : id, pair->second});
                 }
