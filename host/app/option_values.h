@@ -6,9 +6,9 @@
 #include <string>
 
 #include "app/live.h"
+#include "core/curve.h"
 #include "core/display.h"
 #include "core/image.h"
-#include "core/metrics.h"
 #include "io/png.h"
 #include "render/error_estimate.h"
 #include "scene/gltf/lights.h"
@@ -18,12 +18,6 @@ namespace vkcppm {
 
 /// How glass without a volume is taken: as glTF says, or as solid where its mesh is closed.
 enum class ThinGlass { thin, solid };
-
-/// An error at which a render ends.
-struct StopAt {
-    const Metric* metric = nullptr;
-    double value = 0.0;  // > 0
-};
 
 /// Frames of an animation, both ends included.
 struct FrameRange {

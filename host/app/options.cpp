@@ -430,6 +430,10 @@ void declare(CLI::App& app, RaceOptions& options) {
                    "What errors are measured against; without --size it tells the size\n"
                    "(default: references/NAME.exr beside the scene)")
         ->type_name("REF.exr");
+    add(app, "--stop-at", "METRIC=VALUE", options.race.stop_at, parse_stop_at,
+        "End an entrant with the first point of its curve, after 1, 2, 4, ... 64, 128, 192, ... iterations, that\n"
+        "is at most so far from the reference, such as relmse_trimmed=0.0035; one of\n" +
+            metric_names());
     add(app, "--make-reference", "TIME", options.make_reference, parse_seconds,
         "Make it first, in this time, as vkcppm reference does, with a seed that does not race: DIR/reference.exr")
         ->excludes("--reference");

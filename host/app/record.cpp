@@ -130,11 +130,6 @@ std::string estimate_line(const ErrorEstimate& estimate) {
         estimate.relmse.error.value, 100.0 * estimate.noise.value);
 }
 
-bool reached(const StopAt& stop_at, const Rendering& rendering) {
-    assert(!rendering.curve.empty());
-    return stop_at.metric->of(rendering.curve.back().error) <= stop_at.value;
-}
-
 Json report_json(const Report& report) {
     Json json;
     json["device"] = report.device;
@@ -184,7 +179,7 @@ std::string stats_json(const RenderOptions& options, const Scene& scene, const R
         if (options.stop_at) {
             json["stop_at"] = {{"metric", options.stop_at->metric->name},
                                {"value", options.stop_at->value},
-                               {"reached", reached(*options.stop_at, rendering)}};
+                               {"reached", reached(*options.stop_at, rendering.curve)}};
         }
         json["curve"] = curve_json(rendering.curve);
     }

@@ -58,7 +58,6 @@ std::string stats_json(const RenderOptions& options, const Scene& scene, const R
                        const Display& display);
 
 /// True where the last point of the curve is at or below the error to stop at. Asserts that the render was measured.
-bool reached(const StopAt& stop_at, const Rendering& rendering);
 
 /// The passes and totals as a table to read.
 std::string stats_table(const Report& report);

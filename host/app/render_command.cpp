@@ -61,7 +61,7 @@ void print_end(bool reached, const std::string& found, const std::string& wanted
 
 void print_stop(const StopAt& stop_at, const Rendering& rendering, bool quiet) {
     const CurvePoint& last = rendering.curve.back();
-    print_end(reached(stop_at, rendering),
+    print_end(reached(stop_at, rendering.curve),
               fmt::format("{} {:.6g} after {} iterations", stop_at.metric->name, stop_at.metric->of(last.error),
                           last.iterations),
               fmt::format("--stop-at {:.6g}", stop_at.value), quiet);

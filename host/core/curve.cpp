@@ -15,6 +15,10 @@ bool is_snapshot(std::uint64_t iterations) {
     return iterations < last_doubling ? (iterations & (iterations - 1)) == 0 : iterations % last_doubling == 0;
 }
 
+bool reached(const StopAt& stop_at, const Curve& curve) {
+    return !curve.empty() && stop_at.metric->of(curve.back().error) <= stop_at.value;
+}
+
 std::optional<double> log_log_slope(std::span<const double> x, std::span<const double> y) {
     assert(x.size() == y.size());
     double count = 0.0, mean_x = 0.0, mean_y = 0.0;

@@ -20,6 +20,15 @@ struct CurvePoint {
 
 using Curve = std::vector<CurvePoint>;  // in the order of iterations
 
+/// An error at which a render ends.
+struct StopAt {
+    const Metric* metric = nullptr;
+    double value = 0.0;  // > 0
+};
+
+/// True where there is a snapshot, and the last is at or below it.
+bool reached(const StopAt& stop_at, const Curve& curve);
+
 /// True where a snapshot is due after `iterations` >= 1 of them: powers of two up to 64, then multiples of 64.
 /// Depends on nothing else, so that the same render is measured at the same iterations.
 bool is_snapshot(std::uint64_t iterations);

@@ -32,8 +32,9 @@ void add_squared_error(std::vector<double>& sums, const Image& image, const Imag
 class Lane {
 public:
     /// Starts a curve in `run`, or goes on with one. Throws Error(out_of_device_memory) with the entrant.
-    Lane(const SceneOnDevice& on_device, const Scene& scene, RaceRun& run, std::uint32_t seed, const RaceStates& states)
-        : run_(run), settings_(run.entrant.settings), states_(states) {
+    Lane(const SceneOnDevice& on_device, const Scene& scene, RaceRun& run, const std::optional<StopAt>& stop_at,
+         std::uint32_t seed, const RaceStates& states)
+        : run_(run), settings_(run.entrant.settings), stop_at_(stop_at), states_(states) {
         settings_.seed = seed;
         std::optional<Checkpoint> from;
         if (states_.find) from = states_.find({run.entrant.name, settings_});
@@ -54,11 +55,12 @@ public:
 
     bool finished() const {
         return integrator_->completed() >= settings_.iterations ||
-               (settings_.seconds && integrator_->seconds() >= *settings_.seconds);
+               (settings_.seconds && integrator_->seconds() >= *settings_.seconds) || is_near_enough();
     }
 
     /// Of its iterations or its time, 0..1.
     double done() const {
+        if (is_near_enough()) return 1.0;
         const double of_iterations = double(integrator_->completed()) / settings_.iterations;
         const double of_time = settings_.seconds ? integrator_->seconds() / *settings_.seconds : 0.0;
         return std::min(1.0, std::max(of_iterations, of_time));
@@ -97,6 +99,8 @@ public:
     std::uint64_t invalid() const { return integrator_->invalid(); }
 
 private:
+    bool is_near_enough() const { return stop_at_ && reached(*stop_at_, run_.curves.back()); }
+
     void take_snapshot(const Image& reference) {
         Curve& curve = run_.curves.back();
         if (!curve.empty() && curve.back().iterations == integrator_->completed()) return;
@@ -105,6 +109,7 @@ private:
 
     RaceRun& run_;
     Settings settings_;
+    const std::optional<StopAt>& stop_at_;
     const RaceStates& states_;
     std::unique_ptr<Integrator> integrator_;
 };
@@ -159,7 +164,7 @@ RaceResult run_race(const Scene& scene, const RaceSettings& race, const Image& r
     for (std::uint32_t s = 0; s < race.seeds && !result.interrupted; ++s) {
         const std::uint32_t seed = race.entrants.front().settings.seed + s;
         std::vector<Lane> lanes;
-        for (RaceRun& run : result.runs) lanes.emplace_back(on_device, scene, run, seed, states);
+        for (RaceRun& run : result.runs) lanes.emplace_back(on_device, scene, run, race.stop_at, seed, states);
         const auto progress = [&] {
             double done = s;
             for (const Lane& lane : lanes) done += lane.done() / double(lanes.size());

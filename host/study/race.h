@@ -32,6 +32,8 @@ struct RaceSettings {
     /// core/curve.h, whichever comes first. Settings::seed is the first seed, the others follow it.
     std::vector<Entrant> entrants;
     std::uint32_t seeds = 1;
+    /// Ends an entrant, in a seed, with the first snapshot that is at or below it.
+    std::optional<StopAt> stop_at = {};
 };
 
 /// What an entrant did.

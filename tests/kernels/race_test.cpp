@@ -127,6 +127,28 @@ TEST_F(Race, TwiceGivesTheSameCurvesToTheLastBit) {
     }
 }
 
+// Against black every snapshot has an error: an entrant ends with the first that is at or below the bound.
+TEST_F(Race, AnEntrantEndsWhereItIsNearEnough) {
+    const Scene scene = test::project_scene("torus");
+    RaceSettings race = race_of({"cppm", "sppm"});
+    const RaceResult whole = run_race(scene, resolve_race(race, scene), black(), test::device(), go_on);
+    const Metric& metric = find_metric("", "mse");
+    const Curve& curve = whole.runs[0].curves[0];
+    // The error after two iterations: who is at or below it ends at the first such point.
+    race.stop_at = StopAt{&metric, metric.of(curve.at(1).error)};
+    const RaceResult result = run_race(scene, resolve_race(race, scene), black(), test::device(), go_on);
+    for (std::size_t e = 0; e < 2; ++e) {
+        const Curve &all = whole.runs[e].curves[0], &until = result.runs[e].curves[0];
+        const auto end = std::ranges::find_if(
+            all, [&](const CurvePoint& point) { return metric.of(point.error) <= race.stop_at->value; });
+        const std::uint64_t last = end == all.end() ? all.back().iterations : end->iterations;
+        EXPECT_EQ(until.back().iterations, last) << race.entrants[e].name;
+        EXPECT_EQ(reached(*race.stop_at, until), end != all.end());
+        EXPECT_EQ(result.runs[e].reports[0].iterations, last);
+    }
+    EXPECT_LE(result.runs[0].curves[0].back().iterations, 2u);
+}
+
 // What was kept of a shorter race with one seed becomes a longer one with two.
 TEST_F(Race, GoesOnFromWhatWasKeptToTheLastBit) {
     const Scene scene = test::project_scene("torus");

@@ -59,12 +59,31 @@ const shown = () => entrants.filter((entrant) => !state.hidden.has(entrant.name)
 
 // ---- Head
 
+// The error at which an entrant ends, in words.
+function aim() {
+  const metric = race.metrics.find(({name}) => name === race.stop_at.metric);
+  return `${metric.title} ${number(race.stop_at.value)}`;
+}
+
+// Who comes first to the error at which entrants end: by the mean over seeds, of those who come to it with every seed.
+function drawFirst(verdict) {
+  const came = entrants.filter((entrant) => entrant.seconds_to_stop !== null);
+  const first = came.reduce((a, b) => (a && a.seconds_to_stop <= b.seconds_to_stop ? a : b), null);
+  if (!first) {
+    verdict.append(`Nobody comes to ${aim()}${seeds === 1 ? '' : ' with every seed'}.`);
+    return;
+  }
+  verdict.append(make('strong', {}, first.name), ` comes first to ${aim()}: after `);
+  verdict.append(make('strong', {}, `${number(first.seconds_to_stop)} s`), '.');
+}
+
 function drawHead() {
   const file = race.scene.file.split('/').pop();
   at('heading').textContent = `Race: ${file}`;
   const limits = [
     race.seconds === null ? null : `${number(race.seconds)} s`,
     race.iterations === null ? null : plural(race.iterations, 'iteration'),
+    race.stop_at ? aim() : null,
   ].filter(Boolean);
   const paths = new Set(entrants.map((entrant) => entrant.settings.photons));
   at('facts').textContent = [
@@ -99,6 +118,10 @@ function drawVerdict(metric) {
   const verdict = at('verdict');
   verdict.replaceChildren();
   if (measured.length === 0) return;
+  if (race.stop_at) {
+    drawFirst(verdict);
+    return;
+  }
   const best = measured.reduce((a, b) =>
     b.metrics[metric.name].final.mean < a.metrics[metric.name].final.mean ? b : a,
   );

@@ -76,6 +76,16 @@ Json run_json(const Curve& curve, const Report& report, std::uint32_t seed) {
     return json;
 }
 
+/// Seconds to the error at which entrants end, the mean over seeds; null where one has not come to it.
+Json seconds_to(const StopAt& stop_at, const std::vector<Curve>& curves) {
+    double sum = 0.0;
+    for (const Curve& curve : curves) {
+        if (!reached(stop_at, curve)) return {};
+        sum += curve.back().seconds;
+    }
+    return sum / double(curves.size());
+}
+
 std::string colour_text(const glm::u8vec3& colour) {
     return fmt::format("#{:02x}{:02x}{:02x}", colour.r, colour.g, colour.b);
 }
@@ -110,6 +120,8 @@ Json race_json(const RaceOptions& options, const RaceInput& input, const RaceRes
     const Settings& settings = first.entrant.settings;
     json["seconds"] = settings.seconds ? Json(*settings.seconds) : Json();
     json["iterations"] = settings.iterations == unbounded_iterations ? Json() : Json(settings.iterations);
+    if (const auto& stop_at = options.race.stop_at)
+        json["stop_at"] = {{"metric", stop_at->metric->name}, {"value", stop_at->value}};
     json["seeds"] = result.seeds;
     json["interrupted"] = result.interrupted;
     json["baseline"] = baseline.entrant.name;
@@ -137,6 +149,7 @@ Json race_json(const RaceOptions& options, const RaceInput& input, const RaceRes
                      {"settings", settings_json(run.entrant.settings)},
                      {"metrics", Json::object()},
                      {"runs", Json::array()}};
+        if (options.race.stop_at) entrant["seconds_to_stop"] = seconds_to(*options.race.stop_at, run.curves);
         for (const Metric& metric : metrics()) {
             entrant["metrics"][std::string(metric.name)] = metric_json(run, baseline, metric);
         }
