@@ -102,16 +102,16 @@ public:
     Integrator integrator;
 
 private:
-    /// The integrator knows the mean over all its iterations: a batch is what its sum grew by.
+    /// A batch is what the integrator's sums grew by. Not its picture, which is nowhere below 0: the kernel's weights
+    /// are, and cutting off what noise leaves below would be a bias.
     std::vector<glm::dvec3> render_batch() override {
         integrator.run(iterations_a_batch);
-        const Image mean = integrator.resolve();
+        std::vector<glm::dvec3> sum = integrator.sums().film;
         std::vector<glm::dvec3> batch;
-        for (std::size_t i = 0; i < sum_.size(); ++i) {
-            const glm::dvec3 sum = glm::dvec3(mean.rgb[i]) * double(integrator.completed());
-            batch.push_back((sum - sum_[i]) / double(iterations_a_batch));
-            sum_[i] = sum;
+        for (std::size_t i = 0; i < sum.size(); ++i) {
+            batch.push_back((sum[i] - sum_[i]) / double(iterations_a_batch));
         }
+        sum_ = std::move(sum);
         return batch;
     }
 
