@@ -6,10 +6,23 @@
 
 namespace vkcppm {
 
+namespace {
+
+/// Of a pixel's sum; 0 where noise has left it below, and what is no number as it is.
+double mean_of(double sum, std::uint32_t iterations) {
+    const double mean = sum / double(std::max(iterations, 1u));
+    return mean < 0.0 ? 0.0 : mean;
+}
+
+}  // namespace
+
 Image picture_of(const IterationSums& sums) {
     Image image{sums.extent, {}};
     image.rgb.reserve(sums.film.size());
-    for (const glm::dvec3& sum : sums.film) image.rgb.emplace_back(sum / double(std::max(sums.iterations, 1u)));
+    for (const glm::dvec3& sum : sums.film) {
+        image.rgb.emplace_back(mean_of(sum.x, sums.iterations), mean_of(sum.y, sums.iterations),
+                               mean_of(sum.z, sums.iterations));
+    }
     return image;
 }
 
@@ -41,7 +54,7 @@ std::map<std::string, std::vector<float>> surface_channels(const IterationSums& 
         std::vector<float>& rest = channels["rest." + colour];
         for (std::size_t i = 0; i < sums.surfaces.size(); ++i) {
             const Sums s = sums.surfaces[i];
-            rest.push_back(float(sums.film[i][c] / iterations - layer(s, LAYER_DIRECT) - layer(s, LAYER_CAUSTIC)));
+            rest.push_back(float(mean_of(sums.film[i][c], sums.iterations) - layer(s, LAYER_DIRECT) - layer(s, LAYER_CAUSTIC)));
         }
     }
     return channels;

@@ -38,7 +38,7 @@ struct IterationSums {
     ErrorSums errors;                   // where they are estimated; groups without an iteration are empty
 };
 
-/// The mean.
+/// The mean, 0 where noise has left it below (shaders/kernels/resolve.comp).
 Image picture_of(const IterationSums& sums);
 
 /// Channels [P] of the surfaces: ppm.radius (m), ppm.photons, ppm.batch, ppm.rejections, ppm.statistic (over its

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "render/sums.h"
 #include "support/device/rig.h"
 #include "support/scenes/materials.h"
 #include "support/scenes/rooms.h"
@@ -48,6 +49,27 @@ TEST_F(Layers, SumToThePicture) {
             EXPECT_NEAR(sum, image.rgb[i][c], 1e-6 * (1.0 + image.rgb[i][c])) << "pixel " << i << ", channel " << c;
         }
     }
+}
+
+// Reciprocals of areas are unbiased and may be negative (kernels/area.comp), and so may be a sum of few of them.
+TEST_F(Layers, SumToNothingWhereNoiseLeavesThePictureBelowIt) {
+    Rig rig(project_scene("point_plane"), settings_of({4, 4}));
+    rig.integrator.run(1);
+    auto film = rig.all<gpu::Film>(Binding::film);
+    film.at(5).sum = {-0.25f, std::nanf(""), 0.5f};
+    rig.integrator.buffer(Binding::film).upload(film);
+    const glm::vec3 pixel = rig.integrator.resolve().rgb.at(5);
+    EXPECT_EQ(pixel.x, 0.0f);
+    EXPECT_TRUE(std::isnan(pixel.y));
+    EXPECT_EQ(pixel.z, 0.5f);
+    const glm::vec3 merged = picture_of(rig.integrator.sums()).rgb.at(5);
+    EXPECT_EQ(merged.x, 0.0f);
+    EXPECT_TRUE(std::isnan(merged.y));
+    EXPECT_EQ(merged.z, 0.5f);
+    const Channels channels = rig.integrator.aovs();
+    double sum = 0.0;
+    for (const std::string& layer : layers) sum += channels.at(layer + ".R")[5];
+    EXPECT_NEAR(sum, 0.0, 1e-6);
 }
 
 TEST_F(Layers, OfAPlaneUnderAPointLightIsDirectAlone) {
