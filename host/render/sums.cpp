@@ -5,7 +5,6 @@
 #include <cstddef>
 
 namespace vkcppm {
-
 namespace {
 
 /// Of a pixel's sum; 0 where noise has left it below, and what is no number as it is.
@@ -54,7 +53,8 @@ std::map<std::string, std::vector<float>> surface_channels(const IterationSums& 
         std::vector<float>& rest = channels["rest." + colour];
         for (std::size_t i = 0; i < sums.surfaces.size(); ++i) {
             const Sums s = sums.surfaces[i];
-            rest.push_back(float(mean_of(sums.film[i][c], sums.iterations) - layer(s, LAYER_DIRECT) - layer(s, LAYER_CAUSTIC)));
+            const double all = mean_of(sums.film[i][c], sums.iterations);
+            rest.push_back(float(all - layer(s, LAYER_DIRECT) - layer(s, LAYER_CAUSTIC)));
         }
     }
     return channels;
