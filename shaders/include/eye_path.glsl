@@ -216,7 +216,11 @@ void meet_emission(inout EyePath path, Vertex v) {
     if ((v.surface.front || has(v.material, SURFACE_DOUBLE_SIDED)) && sees_light(path.at.flags)) {
         vec3 met = met_radiance(v.material, v.surface, path.at.direction);
         if (met != vec3(0.0)) {
-            float density = EYE_PATHS_ASK ? met_density(v.material, v.surface, path.at.direction, path.at.leg) : 0.0;
+            float density = 0.0;
+            if (EYE_PATHS_ASK) {
+                path.steps -= local_light_steps();
+                density = met_density(v.hit.triangle, v.material, v.surface, path.at.direction, path.at.leg);
+            }
             find(path, throughput_of_met(path, density, asks_emitter(density)) * met, layer_of_met(path.at.flags));
         }
     }
@@ -262,7 +266,7 @@ void ask(inout EyePath path, Vertex v) {
         AskedGroup group = params.asked[g];
         uvec2 seeds = bits.xy;
         for (uint i = 0u; i < group.candidates; ++i) {
-            --path.steps;
+            path.steps -= 1 + int(group.depth);
             dimension += CANDIDATE_DIMENSIONS;
             vec4 u = random4(params.seed, launch.iteration, STREAM_EYE, pixel, dimension);
             uvec2 pair = sobol_pair(launch.iteration * group.candidates + i, seeds);

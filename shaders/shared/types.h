@@ -317,19 +317,34 @@ RECORD(Light)
 // scene's bounds, tells little of what arrives indoors.
 #define ASKED_GROUPS 3u  // at most
 struct AskedGroup {
-    uint first;       // of asked_lights
+    uint first;       // of asked_lights, and how many: of a lamp, where there is no tree
     uint count;
     uint candidates;  // of which an eye path takes one
-    float power;      // of all of them, mean channel, W (frame-scaled): they are asked for in proportion to theirs
+    uint depth;       // of the light tree, branches; 0: there is none
 };
 
-// An entry of the alias table of a group; the numbers are of lights.
+// An entry of the alias table of a lamp: lights that are drawn in proportion to their power. The numbers are of lights.
 #define FIELDS_AskedLight(FIELD, ARRAY, OPTIONAL) \
     FIELD(uint, light) \
     FIELD(float, keep)        /* probability to keep this light */ \
     FIELD(uint, alias_light)  /* the other */ \
-    FIELD(uint, unused)
+    FIELD(float, power)       /* of the lamp, mean channel, W (frame-scaled) */
 RECORD(AskedLight)
+
+// A branch of the light tree, of two children, each a branch or a lamp (include/light_tree.glsl): 80 bytes, read as 5
+// texels. The first is the root.
+#define FIELDS_LightBranch(FIELD, ARRAY, OPTIONAL) \
+    ARRAY(ANY_FEATURE, vec4, sphere, 2)  /* about its lights: centre, radius */ \
+    ARRAY(ANY_FEATURE, uint, axis, 2)    /* of the cone of their normals, octahedral snorm16x2 */ \
+    /* cosine of that cone, snorm16 | cosine of how far from a normal they shine, 15 bits << 16 | LIGHT_BOTH_SIDES */ \
+    ARRAY(ANY_FEATURE, uint, cones, 2) \
+    ARRAY(ANY_FEATURE, float, reach, 2)  /* beyond which they shed no light, frame units */ \
+    ARRAY(ANY_FEATURE, uint, first, 2)   /* of asked_lights, or the branch */ \
+    ARRAY(ANY_FEATURE, uint, count, 2)   /* of these; 0: it is a branch */ \
+    FIELD(float, ratio)                  /* intensity of the second over that of the first */ \
+    FIELD(uint, parent)                  /* its branch << 1 | which child this is */
+RECORD(LightBranch)
+#define LIGHT_BOTH_SIDES 0x80000000u
 
 // A stored photon: what the distance test reads (16 bytes) and what an accepted photon adds (16 bytes).
 #define FIELDS_Photon(FIELD, ARRAY, OPTIONAL) \
@@ -500,12 +515,15 @@ struct PathState {
     float power0;      // largest channel of the power at emission, for Russian roulette
     uint begin;        // stored before this path
     uint next;         // path that the SIMD group takes next
-    // Less what it has gone: > 0: the length from its light within which photons bring direct light; < 0: the negative
-    // of what its light reaches, while it goes straight on; 0: neither.
+    // > 0: the length from its light within which photons bring direct light; < 0: the negative of what its light
+    // reaches, while it goes straight on; 0: neither.
     float near;
     uint met;          // surfaces
     uvec2 media;       // include/media.glsl
+    float gone;        // length since its light, while it goes straight on
+    uint lamp;         // of the light tree: branch << 1 | which child; NO_LAMP: it came from none
 };
+#define NO_LAMP 0xffffffffu
 #define NO_PATH 0xffffffffu
 
 // A path of the path tracer in flight at the end of a round, one a pixel: the next ray of the path, and before it the
@@ -662,7 +680,7 @@ static_assert(sizeof(BvhNode) == 64 && sizeof(InstanceNode) == 64 && sizeof(Inst
 static_assert(sizeof(TriangleGeometry) == 48);
 static_assert(sizeof(TriangleShading) == 16);
 static_assert(sizeof(SurfaceMaterial) == 208 && sizeof(TextureLookup) == 48 && sizeof(Light) == 96);
-static_assert(sizeof(AskedLight) == 16);
+static_assert(sizeof(AskedLight) == 16 && sizeof(LightBranch) == 80);
 static_assert(sizeof(Photon) == 16 && sizeof(PhotonFlux) == 16);
 static_assert(sizeof(HitPosition) == 16 && sizeof(HitWeight) == 16 && sizeof(HitEmission) == 16 &&
               sizeof(HitSurface) == 16);

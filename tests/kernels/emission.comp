@@ -20,7 +20,8 @@ void main() {
     if (i >= launch.items) return;
     EmitOutput start;
     float near;
-    start.kind = emit(inputs[i].bits, inputs[i].v, start.origin, start.direction, start.power, near);
+    uint lamp;
+    start.kind = emit(inputs[i].bits, inputs[i].v, start.origin, start.direction, start.power, near, lamp);
     start.radiance = vec3(0.0);
     if (HAS_ENVIRONMENT) start.radiance = environment_radiance(-start.direction);
     outputs[i] = start;

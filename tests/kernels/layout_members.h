@@ -18,8 +18,9 @@
 #define MEMBERS_TEXTURE_LOOKUP X(first) X(width) X(height) X(flags) X(matrix) X(offset) X(unused)
 #define MEMBERS_LIGHT X(position) X(kind) X(e1) X(keep) X(e2) X(alias_entry) X(power) X(double_sided) X(corner) \
     X(triangle) X(textured)
-#define MEMBERS_ASKED_GROUP X(first) X(count) X(candidates) X(power)
-#define MEMBERS_ASKED_LIGHT X(light) X(keep) X(alias_light) X(unused)
+#define MEMBERS_ASKED_GROUP X(first) X(count) X(candidates) X(depth)
+#define MEMBERS_ASKED_LIGHT X(light) X(keep) X(alias_light) X(power)
+#define MEMBERS_LIGHT_BRANCH X(sphere) X(axis) X(cones) X(reach) X(first) X(count) X(ratio) X(parent)
 #define MEMBERS_LIGHT_RAY X(origin) X(distance) X(direction) X(triangle) X(light) X(layer)
 #define MEMBERS_LIGHT_RAYS X(of)
 #define MEMBERS_PHOTON X(position) X(normal)
@@ -34,7 +35,7 @@
 #define MEMBERS_AOVS X(albedo) X(normal) X(depth) X(hits) X(albedo_low) X(normal_low) X(depth_low) X(layer) X(layer_low)
 #define MEMBERS_FILM X(sum) X(low)
 #define MEMBERS_PATH_STATE X(origin) X(path) X(direction) X(flags) X(power) X(stored) X(power0) X(begin) X(next) \
-    X(near) X(met) X(media)
+    X(near) X(met) X(media) X(gone) X(lamp)
 #define MEMBERS_TRACE_STATE X(origin) X(flags) X(direction) X(density) X(throughput) X(distance) X(radiance) X(done) \
     X(sum) X(ended) X(light_rays) X(met) X(media)
 #define MEMBERS_CURSOR X(cell) X(photon)
