@@ -21,7 +21,8 @@ using std::numbers::pi;
 constexpr int buckets = 12;                   // an axis
 constexpr std::uint32_t deepest_choice = 64;  // below it lamps are split in halves
 constexpr std::size_t least_parallel = 4096;  // lamps of a branch whose halves are built side by side
-constexpr double widening = 3e-4;  // of cones, radians: by more than packing turns an axis and rounding of what kernels do
+constexpr double widening =
+    3e-4;  // of cones, radians: by more than packing turns an axis and rounding of what kernels do
 constexpr double widest_ratio = 1e12;  // of the intensities of two children: less likely ones are found, too
 
 /// What the cost of a split is computed from.
@@ -55,9 +56,9 @@ struct Cluster {
         const double mean = std::min(1.0, glm::length(axes) / count);
         const double cone = std::min(pi, std::acos(std::clamp(2.0 * mean - 1.0, -1.0, 1.0)) + spread);
         const double whole = std::min(pi, cone + falloff);
-        return 2.0 * pi * (1.0 - std::cos(cone)) +
-               0.5 * pi * (2.0 * whole * std::sin(cone) - std::cos(cone - 2.0 * whole) -
-                           2.0 * cone * std::sin(cone) + std::cos(cone));
+        return 2.0 * pi * (1.0 - std::cos(cone)) + 0.5 * pi *
+                                                       (2.0 * whole * std::sin(cone) - std::cos(cone - 2.0 * whole) -
+                                                        2.0 * cone * std::sin(cone) + std::cos(cone));
     }
 
     double cost() const { return intensity * orientation() * diagonal2(); }
@@ -123,9 +124,8 @@ private:
             }
         }
         if (best_axis < 0) return lamps.size() / 2;
-        const auto second = std::stable_partition(lamps.begin(), lamps.end(), [&](std::uint32_t lamp) {
-            return bucket_of(lamp, best_axis) < best_bucket;
-        });
+        const auto second = std::stable_partition(
+            lamps.begin(), lamps.end(), [&](std::uint32_t lamp) { return bucket_of(lamp, best_axis) < best_bucket; });
         return std::size_t(second - lamps.begin());
     }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 #include <span>
 #include <utility>
@@ -106,7 +105,7 @@ void add_punctual_lights(const Scene& scene, const FlatScene& flat, std::vector<
 std::uint32_t candidates(std::size_t lights) { return std::uint32_t(std::clamp<std::size_t>(lights / 2, 1, 4)); }
 
 /// Points of the lamps of a tree of which a path asks for one.
-std::uint32_t candidates_of_tree() { return 2; }
+constexpr std::uint32_t candidates_of_tree = 2;
 
 /// Adds an alias table of those lights; returns their power.
 double add_asked(const std::vector<WeighedLight>& lights, std::span<const std::uint32_t> members, FlatScene& flat) {
@@ -122,8 +121,8 @@ double add_asked(const std::vector<WeighedLight>& lights, std::span<const std::u
 /// Adds the group of those lights, where there are any, as one lamp; returns its power.
 double add_group(const std::vector<WeighedLight>& lights, const std::vector<std::uint32_t>& members, FlatScene& flat) {
     if (members.empty()) return 0.0;
-    flat.asked.push_back({std::uint32_t(flat.asked_lights.size()), std::uint32_t(members.size()),
-                          candidates(members.size()), 0});
+    flat.asked.push_back(
+        {std::uint32_t(flat.asked_lights.size()), std::uint32_t(members.size()), candidates(members.size()), 0});
     return add_asked(lights, members, flat);
 }
 
@@ -213,7 +212,7 @@ double add_local_lights(const Scene& scene, const std::vector<WeighedLight>& lig
         power += add_asked(lights, of_lamp, flat);
     }
     LightTree tree = build_light_tree(lamps);
-    flat.asked.push_back({first, std::uint32_t(local.size()), candidates_of_tree(), tree.depth});
+    flat.asked.push_back({first, std::uint32_t(local.size()), candidates_of_tree, tree.depth});
     flat.light_tree = std::move(tree.branches);
     flat.lamps.assign(flat.triangles.size(), NO_LAMP);
     for (std::size_t i = 0; i < members.size(); ++i) {

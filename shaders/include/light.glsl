@@ -98,11 +98,8 @@ uint choose_asked(Lamp lamp, inout uint word, out float power) {
     return keeps ? asked.light : asked.alias_light;
 }
 
-// The group of local lights, where there are any.
-AskedGroup local_lights() { return params.asked[0]; }
-
 // Steps that it takes to find one, or how often it is asked for, beyond one.
-int local_light_steps() { return int(local_lights().depth); }
+int local_light_steps() { return HAS_LIGHT_TREE ? int(params.asked[0].depth) : 0; }
 
 // About the density, per area, in which points of an emitter are asked for where its lamp is always asked for: exact but
 // for what textures vary. emission: without textures; power: of the lamp.
@@ -118,8 +115,9 @@ vec3 emission_of(uint triangle) {
 
 // The lamp in the light tree of a triangle that emits; NO_LAMP: there is no tree. power: of the lamp.
 uint lamp_with_power(uint triangle, out float power) {
-    uint lamp = local_lights().depth > 0u ? lamp_of(triangle) : NO_LAMP;
-    power = lamp == NO_LAMP ? params.local_power : asked_lights_at(first_of(lamp)).power;
+    uint lamp = HAS_LIGHT_TREE ? lamp_of(triangle) : NO_LAMP;
+    power = params.local_power;
+    if (HAS_LIGHT_TREE && lamp != NO_LAMP) power = asked_lights_at(first_of(lamp)).power;
     return lamp;
 }
 

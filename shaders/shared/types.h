@@ -47,6 +47,7 @@ using uint = std::uint32_t;
 #define SPEC_LEVELS 7     // of the grid that there is room for
 #define SPEC_WAITS 8      // 1: lanes of the photon pass wait for the longest ray of their SIMD group
 #define SPEC_DEALS 9      // 1: lanes of the photon pass share the light paths of their SIMD group
+#define SPEC_LIGHT_TREE 10 // 1: local lights are asked for down a light tree
 
 // Features of a scene or of its settings: a pipeline holds only what its scene needs, and buffers that only a feature
 // reads are empty without it. FEATURE_<NAME> is its bit, HAS_<NAME> (include/kernel.glsl) whether a kernel has it.
