@@ -100,7 +100,9 @@ TEST_F(LightTreeOnDevice, ChoosesLampsByTheirProbability) {
         double sum = 0.0;
         for (const auto& [first, lamp] : lamps) {
             const double p = oracle::lamp_probability(flat.light_tree, lamp, glm::dvec3(inputs[0].position));
-            if (even) EXPECT_NEAR(double(counts[first]), samples * p, 1.5 + 1e-4 * samples * p) << "lamp " << lamp;
+            if (even) {
+                EXPECT_NEAR(double(counts[first]), samples * p, 1.5 + 1e-4 * samples * p) << "lamp " << lamp;
+            }
             observed.push_back(counts[first]);
             found += counts[first];
             wanted.push_back(p);

@@ -72,11 +72,15 @@ TEST(LightTree, FindsEveryLightWhereItShines) {
                     const double probability = oracle::lamp_probability(flat.light_tree, lamp.lamp, point);
                     sum += probability;
                     const bool shines = std::ranges::any_of(lamp.lights, [&](auto& l) { return shines_at(l, point); });
-                    if (shines) ASSERT_GT(probability, 0.0) << "lamp " << lamp.lamp << " in sample " << i;
+                    if (shines) {
+                        ASSERT_GT(probability, 0.0) << "lamp " << lamp.lamp << " in sample " << i;
+                    }
                 }
                 // What comes to a branch of which both children are dark is lost.
                 ASSERT_LE(sum, 1.0 + 1e-9);
-                if (count == 400) ASSERT_GT(sum, 0.5);
+                if (count == 400) {
+                    ASSERT_GT(sum, 0.5);
+                }
             }
         }
     }

@@ -56,4 +56,17 @@ Scene many_lamp_room(std::uint32_t count) {
     return scene;
 }
 
+Scene lamps_over_metal(float roughness) {
+    Scene scene;
+    Material metal = mirror(glm::vec3(0.6f, 0.7f, 0.8f));
+    metal.roughness = roughness;
+    add_quad(scene, {-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, add_material(scene, metal));
+    for (int i = 0; i < 9; ++i) {
+        const glm::dvec3 corner(1.2 * (i % 3 - 1) - 0.2, 0.6 + 0.05 * i, 1.2 * (i / 3 - 1) - 0.2);
+        add_quad(scene, corner, {0.4, 0, 0}, {0, 0, 0.4}, add_material(scene, emitter(glm::vec3(float(1 + i)))));
+    }
+    add_camera(scene, {0, 0.5, 2.5}, {0, 0, 0.3}, 0.7);
+    return scene;
+}
+
 }  // namespace vkcppm::test
