@@ -21,9 +21,8 @@ using std::numbers::pi;
 constexpr int buckets = 12;                   // an axis
 constexpr std::uint32_t deepest_choice = 64;  // below it lamps are split in halves
 constexpr std::size_t least_parallel = 4096;  // lamps of a branch whose halves are built side by side
-constexpr double widening =
-    3e-4;  // of cones, radians: by more than packing turns an axis and rounding of what kernels do
-constexpr double widest_ratio = 1e12;  // of the intensities of two children: less likely ones are found, too
+constexpr double widening = 3e-4;             // of cones, radians: more than packing turns an axis
+constexpr double widest_ratio = 1e12;         // of the intensities of two children: the weaker is found, too
 
 /// What the cost of a split is computed from.
 struct Cluster {
@@ -86,6 +85,7 @@ private:
 
     /// The lamps of a branch, at most 2^31, into two; returns how many are of the first.
     std::size_t split(Lamps lamps, std::uint32_t depth) const {
+        if (lamps.size() == 2) return 1;
         glm::vec3 low(std::numeric_limits<float>::infinity()), high(-low);
         for (const std::uint32_t lamp : lamps) {
             low = glm::min(low, centre_of(lamp));
@@ -99,12 +99,18 @@ private:
             return std::clamp(int(place * float(buckets)), 0, buckets - 1);
         };
         const glm::vec3 towards = lamps_[lamps.front()].axis;
+        std::array<std::array<Cluster, buckets>, 3> clusters{};
+        for (const std::uint32_t lamp : lamps) {
+            const Cluster cluster = cluster_of(lamp, towards);
+            for (int axis = 0; axis < 3; ++axis) {
+                if (extent[axis] > 0.0f) clusters[axis][bucket_of(lamp, axis)].add(cluster);
+            }
+        }
         double least = std::numeric_limits<double>::infinity();
         int best_axis = -1, best_bucket = 0;
         for (int axis = 0; axis < 3; ++axis) {
-            if (!(extent[axis] > 0.0f)) continue;
-            std::array<Cluster, buckets> of{}, after{};
-            for (const std::uint32_t lamp : lamps) of[bucket_of(lamp, axis)].add(cluster_of(lamp, towards));
+            const std::array<Cluster, buckets>& of = clusters[axis];
+            std::array<Cluster, buckets> after{};
             after[buckets - 1] = of[buckets - 1];
             for (int b = buckets - 2; b > 0; --b) {
                 after[b] = of[b];
@@ -112,8 +118,9 @@ private:
             }
             Cluster before;
             for (int b = 1; b < buckets; ++b) {
+                if (of[b - 1].count == 0.0) continue;  // as the one before
                 before.add(of[b - 1]);
-                if (before.count == 0.0 || after[b].count == 0.0) continue;
+                if (after[b].count == 0.0) break;
                 // Rather across the long side.
                 const double cost = (before.cost() + after[b].cost()) * double(longest / extent[axis]);
                 if (cost < least) {
@@ -143,15 +150,17 @@ private:
         const glm::vec3 centre = 0.5f * (whole.low + whole.high);
         const double length = glm::length(whole.axes);
         const glm::dvec3 axis = length > 0.0 ? whole.axes / length : glm::dvec3(0.0, 0.0, 1.0);
-        double radius2 = 0.0, cone = 0.0;
+        double radius2 = 0.0, cone = 0.0, least_cosine = 1.0;
         for (const std::uint32_t lamp : lamps) {
             const Lamp& l = lamps_[lamp];
             const glm::dvec3 farthest(glm::max(glm::abs(centre - l.low), glm::abs(l.high - centre)));
             radius2 = std::max(radius2, glm::dot(farthest, farthest));
-            const double cosine = glm::dot(axis, glm::dvec3(l.axis));
-            cone = std::max(cone, std::acos(std::clamp(both_sides ? std::abs(cosine) : cosine, -1.0, 1.0)) + l.spread);
+            double cosine = std::clamp(glm::dot(axis, glm::dvec3(l.axis)), -1.0, 1.0);
+            if (both_sides) cosine = std::abs(cosine);
+            least_cosine = std::min(least_cosine, cosine);
+            if (l.spread > 0.0f) cone = std::max(cone, std::acos(cosine) + l.spread);
         }
-        cone = std::min(pi, cone + widening);
+        cone = std::min(pi, std::max(cone, std::acos(least_cosine)) + widening);
         const double falloff = std::min(0.5 * pi, whole.falloff + widening);
         branch.sphere[child] = glm::vec4(centre, float(std::sqrt(radius2) * (1.0 + 1e-6)));
         branch.axis[child] = pack_direction(glm::vec3(axis));

@@ -110,6 +110,25 @@ TEST_F(GpuTest, ALampBesideAFarOneOfAMillionTimesItsPowerIsSeen) {
     if (HasFailure()) leave_pictures(got, want);
 }
 
+// Powers from 1e-30 to 1e30 W, and ten thousand lamps in one place, which are one of ten thousand times the power.
+TEST_F(GpuTest, LampsOfAnyPowerAndInOnePlaceGiveNumbers) {
+    Settings settings;
+    settings.size = Extent{floor_pixels, floor_pixels};
+    settings.photons = 1024;
+    Scene scene = floor_below({});
+    const Scene lamps = lamps_of_every_kind(50, 30.0, 2);
+    scene.lights = lamps.lights;
+    for (const Triangle& triangle : lamps.triangles) {
+        const auto at = [&](int c) { return lamps.positions[triangle.vertex[c]] + glm::dvec3(0, 1.1, 0); };
+        add_triangle(scene, at(0), at(1), at(2), add_material(scene, lamps.materials[triangle.material]));
+    }
+    valid_picture(scene, settings, 16);
+
+    const std::vector<Bulb> bulbs(10000, Bulb{{0.2, 1.0, 0.1}, 1e-4});
+    const Image want = expected({{{0.2, 1.0, 0.1}, 1.0}}), got = valid_picture(floor_below(bulbs), settings, 512);
+    EXPECT_LT(compare(got, want).relmse.all, 1e-4);
+}
+
 // Asked for or met after a rough lobe, the weights of the two sum to 1.
 TEST_F(GpuTest, LampsThatMetalShowsAreWeighedOnce) {
     for (const float roughness : {0.3f, 0.6f}) {
