@@ -141,8 +141,8 @@ bool are_one_face(const Scene& scene, const FlatScene& flat, const gpu::Light& a
     return common == 2;
 }
 
-/// The local lights, lamp by lamp: parts of a textured triangle are one, and triangles of a quadrilateral that follow on
-/// one another in the scene.
+/// The local lights, lamp by lamp: parts of a textured triangle are one, and two triangles of a quadrilateral, the one
+/// after the other in the scene.
 std::vector<std::span<const std::uint32_t>> lamps_of(const Scene& scene, const FlatScene& flat,
                                                      const std::vector<WeighedLight>& lights,
                                                      std::span<const std::uint32_t> local) {

@@ -4,8 +4,8 @@
 // followed is weighed against that by the balance heuristic (multiple importance sampling; Veach and Guibas 1995).
 // Photons bring all other light, and that of emitting surfaces which are so close, or of which so little is asked for,
 // that a sample would seldom find them and then weigh much: where the density of asking is below LEAST_DENSITY. That is
-// a rule on the two points alone, which photons know when they arrive, so that each light is brought once. Elsewhere (FEATURE_DIRECT is not set) photons
-// bring direct light too. Pure functions.
+// a rule on the two points alone, which photons know when they arrive, so that each light is brought once. Elsewhere
+// (FEATURE_DIRECT is not set) photons bring direct light too. Pure functions.
 #ifndef DIRECT_GLSL
 #define DIRECT_GLSL
 
@@ -16,9 +16,9 @@ const float LEAST_DENSITY = 0.1;  // 1/sr
 // True where eye paths bring the direct light of an emitting surface that could be asked for with this density, 1/sr.
 bool asks_emitter(float density) { return density >= LEAST_DENSITY; }
 
-// The distance from an emitter within which photons bring its direct light, where its lamp is always asked for. density:
-// of asking for the point, per area; cosine: to the emitter's normal. The density per solid angle is that per area times
-// distance^2 / cosine.
+// The distance from an emitter within which photons bring its direct light, where its lamp is always asked for.
+// density: of asking for the point, per area; cosine: to the emitter's normal. The density per solid angle is that per
+// area times distance^2 / cosine.
 float near_emitter(float density, float cosine) { return sqrt(LEAST_DENSITY * cosine / density); }
 
 // True where photons bring it `distance` away. share: how often its lamp is asked for there.

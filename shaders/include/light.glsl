@@ -101,8 +101,8 @@ uint choose_asked(Lamp lamp, inout uint word, out float power) {
 // Steps that it takes to find one, or how often it is asked for, beyond one.
 int local_light_steps() { return HAS_LIGHT_TREE ? int(params.asked[0].depth) : 0; }
 
-// About the density, per area, in which points of an emitter are asked for where its lamp is always asked for: exact but
-// for what textures vary. emission: without textures; power: of the lamp.
+// About the density, per area, in which points of an emitter are asked for where its lamp is always asked for: exact
+// but for what textures vary. emission: without textures; power: of the lamp.
 float emitter_density(vec3 emission, bool double_sided, float power) {
     // Not the sum of the channels, which may be beyond floats.
     return dot(emission / power, vec3(double_sided ? 2.0 * PI / 3.0 : PI / 3.0));
@@ -205,9 +205,8 @@ LightSample sample_light(AskedGroup group, uvec2 bits, vec2 v, vec3 position) {
 // light emits there, so that every path carries the same power at its start (but for what a texture varies within a
 // triangle, and entry_area within a pixel of the environment). bits: four random words; v: four numbers in [0, 1).
 // near: length from the light within which photons bring what is left to them of what it sends (include/direct.glsl,
-// include/split.glsl); of a light with a range the negative of how far the photon gets; else 0. lamp: in the light tree,
-// of an emitter; `near` is as if it was always asked for. Returns the kind of
-// the light.
+// include/split.glsl); of a light with a range the negative of how far the photon gets; else 0. lamp: of an emitter, in
+// the light tree, where there is one; `near` is then as if it was always asked for. Returns the kind of the light.
 uint emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 power, out float near, out uint lamp) {
     vec4 u = unit_floats(bits);
     uint index;
@@ -225,9 +224,9 @@ uint emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 powe
         if (HAS_SPLIT) near = params.near_lights;
         if (HAS_DIRECT) {
             uint triangle = lights_at(index).triangle;
-            float power_of_lamp;
-            lamp = lamp_with_power(triangle, power_of_lamp);
-            near = near_emitter(emitter_density(emission_of(triangle), light.double_sided != 0u, power_of_lamp), local.z);
+            float all;
+            lamp = lamp_with_power(triangle, all);
+            near = near_emitter(emitter_density(emission_of(triangle), light.double_sided != 0u, all), local.z);
         }
         // Off the emitter by its rounding error, as `leave` does; its error travels in e-vectors' scale.
         vec3 extent = abs(light.position) + abs(light.e1) + abs(light.e2);

@@ -1,8 +1,8 @@
-// The light tree, by which local lights are asked for in proportion to what they may bring to a point (Conty Estevez and
-// Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", 2018). Its leaves are lamps: a point or spot
-// light, a triangle, or the two of a flat quadrilateral. How often a lamp is asked for is a function of the point alone,
-// not of the surface there: photons, which know no eye path, evaluate it too (include/direct.glsl). Reads light_tree,
-// lamps.
+// The light tree, by which local lights are asked for in proportion to what they may bring to a point (Conty Estevez
+// and Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", 2018). Its leaves are lamps: a point or
+// spot light, a triangle, or the two of a flat quadrilateral. How often a lamp is asked for is a function of the point
+// alone, not of the surface there: photons, which know no eye path, evaluate it too (include/direct.glsl). Reads
+// light_tree, lamps.
 #ifndef LIGHT_TREE_GLSL
 #define LIGHT_TREE_GLSL
 
@@ -16,8 +16,8 @@ LAMPS(TEXELS)
 // half of it; measured, 0.4 has the least variance.
 const float LEAST_DISTANCE2 = 0.4;
 
-// What a child of a branch may bring to a point, but for its intensity: about the largest cosine at its lights, over the
-// squared distance. 0 only where none of its lights shines.
+// What a child of a branch may bring to a point, but for its intensity: about the largest cosine at its lights, over
+// the squared distance. 0 only where none of its lights shines.
 float importance(LightBranch branch, int child, vec3 position) {
     vec4 sphere = branch.sphere[child];
     vec3 away = position - sphere.xyz;
@@ -55,10 +55,10 @@ struct Lamp {
 };
 
 const float ULP_OF_WORDS = 2.3283064365386963e-10;  // 2^-32
-const float ULP_OF_FLOATS = 9.5367431640625e-7;     // 2^-20: about, of those in [0, 1)
+const float COARSE = 9.5367431640625e-7;            // 2^-20
 
-// Goes down the tree, where the group has one, to a lamp. word: as a fraction it chooses, and keeps what it has not used:
-// equidistributed words stay so. v: two numbers in [0, 1), for what is beyond the bits of the word.
+// Goes down the tree, where the group has one, to a lamp. word: as a fraction it chooses, and keeps what it has not
+// used: equidistributed words stay so. v: two numbers in [0, 1), for what is beyond the bits of the word.
 Lamp choose_lamp(AskedGroup group, vec3 position, inout uint word, vec2 v) {
     bool has_tree = HAS_LIGHT_TREE && group.depth > 0u;
     Lamp lamp = Lamp(has_tree ? 0u : group.first, has_tree ? 0u : group.count, 1.0);
@@ -76,7 +76,7 @@ Lamp choose_lamp(AskedGroup group, vec3 position, inout uint word, vec2 v) {
         if (probability == 0.0) break;
         share = takes_small ? share / small : (share - small) / large;
         step /= probability;
-        if (step > ULP_OF_FLOATS) {
+        if (step > COARSE) {
             share += v.x * step;
             step = ULP_OF_WORDS;
             v = v.yx;

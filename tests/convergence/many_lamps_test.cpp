@@ -1,5 +1,5 @@
-// Direct light of many lamps, which are asked for by what they bring to the place: closed forms, and the same picture as
-// by photons and by path tracing.
+// Direct light of many lamps, which are asked for by what they bring to the place: closed forms, and the same picture
+// as by photons and by path tracing.
 
 #include <cmath>
 #include <numbers>

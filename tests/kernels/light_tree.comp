@@ -1,6 +1,6 @@
 #version 460
-// Lamps of a light tree: which one a word chooses at a point, and how likely another is there. launch.argument: depth of
-// the tree.
+// Lamps of a light tree: which one a word chooses at a point, and how likely another is there. launch.argument: depth
+// of the tree.
 #include "include/kernel.glsl"
 #include "include/light_tree.glsl"
 #include "probe.h"

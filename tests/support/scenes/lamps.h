@@ -15,8 +15,8 @@ Scene lamps_of_every_kind(std::uint32_t count, double decades, std::uint32_t see
 /// at random places; every third has a hundred times the radiance of the others. One camera.
 Scene many_lamp_room(std::uint32_t count);
 
-/// Nine square lamps of 40 cm over a sheet of metal of that roughness, which alone the camera sees: asking for a lamp and
-/// following the metal's lobe find about as much.
+/// Nine square lamps of 40 cm over a sheet of metal of that roughness, which alone the camera sees: asking for a lamp
+/// and following the metal's lobe find about as much.
 Scene lamps_over_metal(float roughness);
 
 }  // namespace vkcppm::test
