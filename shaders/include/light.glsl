@@ -121,16 +121,22 @@ uint lamp_with_power(uint triangle, out float power) {
     return lamp;
 }
 
-// The density per solid angle, 1/sr, in which a triangle that emits is asked for, for a ray that meets it `distance`
-// away.
-float met_density(uint triangle, SurfaceMaterial material, Surface surface, vec3 direction, float distance) {
+// Densities, 1/sr, in which a direction to an emitter is asked for.
+struct AskedDensity {
+    float density;
+    float of_lamp;  // the same if its lamp was always asked for: include/direct.glsl
+};
+
+// Those of a triangle that emits, for a ray that meets it `distance` away.
+AskedDensity met_density(uint triangle, SurfaceMaterial material, Surface surface, vec3 direction, float distance) {
     // Without textures, as where the light is asked for.
     vec3 emission = HAS_TEXTURES ? materials_at(surface.material).emission : material.emission;
     float cosine = max(1e-12, -dot(direction, surface.geometric));
     float power;
     uint lamp = lamp_with_power(triangle, power);
-    float share = lamp_probability(lamp, surface.position - distance * direction);
-    return emitter_density(emission, has(material, SURFACE_DOUBLE_SIDED), power) * share * distance * distance / cosine;
+    float of_lamp = emitter_density(emission, has(material, SURFACE_DOUBLE_SIDED), power);
+    of_lamp *= distance * distance / cosine;
+    return AskedDensity(of_lamp * lamp_probability(lamp, surface.position - distance * direction), of_lamp);
 }
 
 // The density, 1/sr, in which directions to the environment are asked for.
@@ -147,13 +153,14 @@ struct LightSample {
     vec3 radiance;    // over the density of the sample; of punctual lights the irradiance across it, over the
                       // probability
     float density;    // about that of the direction, 1/sr, the same function as of what a path meets; 0: punctual
+    float of_lamp;    // AskedDensity
     uint triangle;    // that the light is a part of; NO_TRIANGLE: none
 };
 
 // A light of the group, and a point in proportion to what is emitted there. bits: two random words, which may be
 // equidistributed; v: two numbers in [0, 1).
 LightSample sample_light(AskedGroup group, uvec2 bits, vec2 v, vec3 position) {
-    LightSample s = LightSample(vec3(0.0), FAR, vec3(0.0), 0.0, NO_TRIANGLE);
+    LightSample s = LightSample(vec3(0.0), FAR, vec3(0.0), 0.0, 0.0, NO_TRIANGLE);
     Lamp lamp = choose_lamp(group, position, bits.x, v);
     if (lamp.count == 0u) return s;
     float power;
@@ -174,8 +181,9 @@ LightSample sample_light(AskedGroup group, uvec2 bits, vec2 v, vec3 position) {
         float inverse = cosine / (s.distance * s.distance);
         s.radiance = light.power * (inverse / (double_sided ? 2.0 * PI : PI));
         if (has_share(light)) s.radiance *= emitted_share(light, b, s.direction);
-        float density = emitter_density(emission_of(s.triangle), double_sided, power) * lamp.probability;
-        if (cosine > 0.0) s.density = density / inverse;
+        float density = emitter_density(emission_of(s.triangle), double_sided, power);
+        if (cosine > 0.0) s.of_lamp = density / inverse;
+        s.density = s.of_lamp * lamp.probability;
     }
     if ((HAS_POINT_LIGHTS || HAS_SPOT_LIGHTS) &&
         (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT)) {
@@ -205,15 +213,14 @@ LightSample sample_light(AskedGroup group, uvec2 bits, vec2 v, vec3 position) {
 // light emits there, so that every path carries the same power at its start (but for what a texture varies within a
 // triangle, and entry_area within a pixel of the environment). bits: four random words; v: four numbers in [0, 1).
 // near: length from the light within which photons bring what is left to them of what it sends (include/direct.glsl,
-// include/split.glsl); of a light with a range the negative of how far the photon gets; else 0. lamp: of an emitter, in
-// the light tree, where there is one; `near` is then as if it was always asked for. Returns the kind of the light.
-uint emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 power, out float near, out uint lamp) {
+// include/split.glsl); of a light with a range the negative of how far the photon gets; else 0. Returns the kind of the
+// light.
+uint emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 power, out float near) {
     vec4 u = unit_floats(bits);
     uint index;
     Light light = choose_light(bits, index);
     power = light.power;
     near = 0.0;
-    lamp = NO_LAMP;
     // One kind after the other, each only where the scene has it.
     if (HAS_AREA_LIGHTS && light.kind == LIGHT_TRIANGLE) {
         vec2 b = sample_triangle(u.zw);
@@ -224,9 +231,9 @@ uint emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 powe
         if (HAS_SPLIT) near = params.near_lights;
         if (HAS_DIRECT) {
             uint triangle = lights_at(index).triangle;
-            float all;
-            lamp = lamp_with_power(triangle, all);
-            near = near_emitter(emitter_density(emission_of(triangle), light.double_sided != 0u, all), local.z);
+            float of_lamp;
+            lamp_with_power(triangle, of_lamp);
+            near = near_emitter(emitter_density(emission_of(triangle), light.double_sided != 0u, of_lamp), local.z);
         }
         // Off the emitter by its rounding error, as `leave` does; its error travels in e-vectors' scale.
         vec3 extent = abs(light.position) + abs(light.e1) + abs(light.e2);

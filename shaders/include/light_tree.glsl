@@ -1,8 +1,7 @@
 // The light tree, by which local lights are asked for in proportion to what they may bring to a point (Conty Estevez
 // and Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", 2018). Its leaves are lamps: a point or
 // spot light, a triangle, or the two of a flat quadrilateral. How often a lamp is asked for is a function of the point
-// alone, not of the surface there: photons, which know no eye path, evaluate it too (include/direct.glsl). Reads
-// light_tree, lamps.
+// alone, not of the surface there. Reads light_tree, lamps.
 #ifndef LIGHT_TREE_GLSL
 #define LIGHT_TREE_GLSL
 
@@ -20,13 +19,11 @@ const float LEAST_DISTANCE2 = 0.4;
 // the squared distance. 0 only where none of its lights shines.
 float importance(LightBranch branch, int child, vec3 position) {
     vec4 sphere = branch.sphere[child];
+    uint cones = branch.cones[child];
     vec3 away = position - sphere.xyz;
     float distance2 = dot(away, away), radius2 = sphere.w * sphere.w;
-    float about = 1.0 / max(max(distance2, LEAST_DISTANCE2 * radius2), 1e-12);  // no nearer than positions are known
-    if (distance2 <= radius2) return about;
-    float inverse = inversesqrt(distance2);
-    if (distance2 * inverse - sphere.w > branch.reach[child]) return 0.0;
-    uint cones = branch.cones[child];
+    float nearest2 = max(max(distance2, LEAST_DISTANCE2 * radius2), 1e-12);  // no nearer than positions are known
+    float inverse = inversesqrt(max(distance2, 1e-30));
     float cosine = dot(away, unpack_direction(branch.axis[child])) * inverse;
     if ((cones & LIGHT_BOTH_SIDES) != 0u) cosine = abs(cosine);
     float sine = sqrt(max(0.0, 1.0 - cosine * cosine));
@@ -39,13 +36,17 @@ float importance(LightBranch branch, int child, vec3 position) {
     // Less the sphere, as it is seen from there.
     float sin_sphere = sphere.w * inverse, cos_sphere = sqrt(max(0.0, 1.0 - sin_sphere * sin_sphere));
     float largest = cos_left >= cos_sphere ? 1.0 : cos_left * cos_sphere + sin_left * sin_sphere;
-    return largest > float(cones >> 16u & 0x7fffu) / 32767.0 ? largest * about : 0.0;
+    bool inside = distance2 <= radius2;
+    bool shines = largest > float(cones >> 16u & 0x7fffu) / 32767.0 &&
+                  distance2 * inverse - sphere.w <= branch.reach[child];
+    return inside ? 1.0 / nearest2 : shines ? largest / nearest2 : 0.0;
 }
 
-// The probability of that child, whose sibling it is weighed against; 0: neither brings light.
-float probability_of(LightBranch branch, int child, vec3 position) {
-    float first = importance(branch, 0, position), second = branch.ratio * importance(branch, 1, position);
-    return first + second > 0.0 ? (child == 0 ? first : second) / (first + second) : 0.0;
+// The probabilities of its two children; 0: neither brings light.
+vec2 probabilities(LightBranch branch, vec3 position) {
+    vec2 brings = vec2(importance(branch, 0, position), branch.ratio * importance(branch, 1, position));
+    float both = brings.x + brings.y;
+    return both > 0.0 ? brings / both : vec2(0.0);
 }
 
 struct Lamp {
@@ -66,10 +67,10 @@ Lamp choose_lamp(AskedGroup group, vec3 position, inout uint word, vec2 v) {
     float step = ULP_OF_WORDS;  // between shares that there are
     while (HAS_LIGHT_TREE && lamp.count == 0u) {
         LightBranch branch = light_tree_at(lamp.first);
-        float of_first = probability_of(branch, 0, position), of_second = probability_of(branch, 1, position);
+        vec2 of = probabilities(branch, position);
         // The less likely child is that of small shares, which floats know more exactly.
-        bool first_is_small = of_first < of_second;
-        float small = min(of_first, of_second), large = max(of_first, of_second);
+        bool first_is_small = of.x < of.y;
+        float small = min(of.x, of.y), large = max(of.x, of.y);
         bool takes_small = share < small;
         int child = takes_small == first_is_small ? 0 : 1;
         float probability = takes_small ? small : large;
@@ -99,7 +100,7 @@ float lamp_probability(uint lamp, vec3 position) {
     float probability = 1.0;
     while (HAS_LIGHT_TREE && lamp != NO_LAMP) {
         LightBranch branch = light_tree_at(lamp >> 1u);
-        probability *= probability_of(branch, int(lamp & 1u), position);
+        probability *= probabilities(branch, position)[lamp & 1u];
         lamp = branch.parent;
     }
     return probability;

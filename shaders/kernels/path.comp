@@ -48,7 +48,7 @@ vec3 met_emission(TraceState state, uint triangle, Surface surface, SurfaceMater
     if (material.emission == vec3(0.0) || !(surface.front || double_sided)) return vec3(0.0);
     if (photons_bring_emission(state.flags, state.distance)) return vec3(0.0);
     return met_radiance(material, surface, state.direction) *
-           met_weight(state, met_density(triangle, material, surface, state.direction, state.distance));
+           met_weight(state, met_density(triangle, material, surface, state.direction, state.distance).density);
 }
 
 // Asks for a point of the lights of each group, weighed against meeting it. dimension: of the bounce.

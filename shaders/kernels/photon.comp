@@ -13,7 +13,6 @@
 #include "include/bounds.glsl"
 #include "include/bsdf.glsl"
 #include "include/counters.glsl"
-#include "include/direct.glsl"
 #include "include/frame.glsl"
 #include "include/light.glsl"
 #include "include/path.glsl"
@@ -40,32 +39,34 @@ float shading_correction(Surface surface, vec3 before, vec3 after) {
     return dot(before, surface.normal) * cos_geometric / (dot(before, surface.geometric) * cos_shading);
 }
 
-// True where the light of the path, which may have a range, reaches as far as the photon has gone.
-bool gets_there(PathState state) {
-    return !HAS_RANGES || state.near >= 0.0 || (state.flags & PATH_DIRECT) == 0u || state.gone < -state.near;
+// What a light still reaches (PathState::near, negative) once its photon has gone `length`.
+float shorter(float near, float length) { return -max(1e-30, -near - length); }
+
+// Takes what the photon goes off its length; false where its light does not reach so far.
+bool gets_there(inout PathState state, float length) {
+    if (HAS_RANGES && state.near < 0.0 && (state.flags & PATH_DIRECT) != 0u) {
+        bool there = length < -state.near;
+        state.near = shorter(state.near, length);
+        return there;
+    }
+    state.near = max(0.0, state.near - length);
+    return true;
 }
 
 // Begins the path of the lane at a light.
 void begin_light_path(inout PathState state) {
     uint kind = emit(random_words(params.seed, launch.iteration, STREAM_PHOTON, state.path, 0u),
                      random4(params.seed, launch.iteration, STREAM_PHOTON, state.path, 1u),
-                     state.origin, state.direction, state.power, state.near, state.lamp);
+                     state.origin, state.direction, state.power, state.near);
     // Of no area, so that no eye path meets it.
     bool punctual = kind == LIGHT_POINT || kind == LIGHT_SPOT || kind == LIGHT_DIRECTIONAL;
     state.flags = PATH_OUTSIDE | PATH_DIRECT;
     state.media = NO_MEDIA;
     if (punctual) state.flags |= PATH_STRAIGHT;
     vec3 entry = enter_bounds(state.origin, state.direction);
-    state.gone = HAS_RANGES && state.near < 0.0 ? distance(state.origin, entry) : 0.0;
+    if (HAS_RANGES && state.near < 0.0) state.near = shorter(state.near, distance(state.origin, entry));
     state.origin = entry;
     state.power0 = largest(state.power);
-}
-
-// True where the photon, which has met nothing before, brings what its emitter sends.
-bool is_lit_near(PathState state, vec3 position) {
-    bool asks = (state.flags & PATH_DIRECT) != 0u && state.near > 0.0 && state.near <= state.gone;
-    uint lamp = asks ? state.lamp : NO_LAMP;
-    return is_near_emitter(state.near, state.gone, lamp_probability(lamp, position));
 }
 
 // What the photon has met.
@@ -102,7 +103,7 @@ bool scatter(inout PathState state, Bsdf bsdf, Surface surface, vec4 u) {
     float density;
     vec3 weight = sample_lobe(lobe, bsdf, surface, u.xy, false, state.direction, density);
     state.power *= weight * inverse_probability;
-    bool lit_near = (state.flags & PATH_DIRECT) != 0u && state.near > state.gone;
+    bool lit_near = (state.flags & PATH_DIRECT) != 0u && state.near > 0.0;
     if (!passes_pane(bsdf, lobe)) state.flags &= ~PATH_DIRECT;
     if (density != DELTA) state.flags &= ~PATH_STRAIGHT;
     if (HAS_AOVS && density != DELTA) state.flags |= PATH_SCATTERED;
@@ -133,10 +134,9 @@ bool meet(inout PathState state, uint slot, Hit hit) {
     if (HAS_UNLIT && has(material, SURFACE_UNLIT)) bsdf = black();
     // What is black reflects no photon to any eye. Where a surface is partly there the photon counts in full: it tells
     // how much light arrives, and the eye path has asked for the surface.
-    state.gone += hit.t;
-    if (!gets_there(state)) return false;
+    if (!gets_there(state, hit.t)) return false;
     bool brings = brings_light(state.flags);
-    if (HAS_DIRECT) brings = (state.flags & PATH_DIRECT) == 0u || is_lit_near(state, surface.position);
+    if (HAS_DIRECT) brings = (state.flags & PATH_DIRECT) == 0u || state.near > 0.0;
     if (brings && gathers_light(bsdf)) store_photon(state, slot, surface);
     bool there = true;
     if (HAS_ALPHA) {
@@ -194,7 +194,7 @@ void main() {
     PathState state;
     if (launch.round == 0u) {
         state = PathState(vec3(0.0), NO_PATH, vec3(0.0), PATH_OUTSIDE, vec3(0.0), 0u, 0.0, 0u, first, 0.0, 0u,
-                          NO_MEDIA, 0.0, NO_LAMP);
+                          NO_MEDIA);
     } else {
         state = paths[lane];
     }
@@ -223,7 +223,7 @@ void main() {
         }
         // No `continue`: lanes are promised to be together again behind a branch, not where a loop goes on.
         if (running && found != TRACE_UNFINISHED) {
-            steps -= vertex_steps() + local_light_steps();
+            steps -= vertex_steps();
             first_ray = false;
             fresh = true;
             ++rays;

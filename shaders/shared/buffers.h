@@ -83,7 +83,8 @@
 // [ERROR_GROUPS x pixels] where errors are estimated: sums over the iterations of a group, of radiance in x, y and z,
 // of the bias of its luminance in w (include/error_groups.glsl).
 #define ERRORS(ROW)            ROW(45, errors, vec4, pixel, error_groups, records, carried, update)
-// Of the scene again, where lights are in a tree: of a triangle its lamp as PathState::lamp has it.
+// Of the scene again, where lights are in a tree: of a triangle its lamp, branch << 1 | which
+// child, or NO_LAMP.
 #define LIGHT_TREE(ROW)        ROW(46, light_tree, LightBranch, light, uploaded, uint_texels, scratch, never)
 #define LAMPS(ROW)             ROW(47, lamps, uint, triangle, uploaded, word_texels, scratch, never)
 

@@ -346,6 +346,7 @@ RECORD(AskedLight)
     FIELD(uint, parent)                  /* its branch << 1 | which child this is */
 RECORD(LightBranch)
 #define LIGHT_BOTH_SIDES 0x80000000u
+#define NO_LAMP 0xffffffffu  // in place of a branch << 1 | which child
 
 // A stored photon: what the distance test reads (16 bytes) and what an accepted photon adds (16 bytes).
 #define FIELDS_Photon(FIELD, ARRAY, OPTIONAL) \
@@ -516,15 +517,12 @@ struct PathState {
     float power0;      // largest channel of the power at emission, for Russian roulette
     uint begin;        // stored before this path
     uint next;         // path that the SIMD group takes next
-    // > 0: the length from its light within which photons bring direct light; < 0: the negative of what its light
-    // reaches, while it goes straight on; 0: neither.
+    // Less what it has gone: > 0: the length from its light within which photons bring direct light; < 0: the negative
+    // of what its light reaches, while it goes straight on; 0: neither.
     float near;
     uint met;          // surfaces
     uvec2 media;       // include/media.glsl
-    float gone;        // length since its light, while it goes straight on
-    uint lamp;         // of the light tree: branch << 1 | which child; NO_LAMP: it came from none
 };
-#define NO_LAMP 0xffffffffu
 #define NO_PATH 0xffffffffu
 
 // A path of the path tracer in flight at the end of a round, one a pixel: the next ray of the path, and before it the

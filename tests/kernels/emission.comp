@@ -20,8 +20,7 @@ void main() {
     if (i >= launch.items) return;
     EmitOutput start;
     float near;
-    uint lamp;
-    start.kind = emit(inputs[i].bits, inputs[i].v, start.origin, start.direction, start.power, near, lamp);
+    start.kind = emit(inputs[i].bits, inputs[i].v, start.origin, start.direction, start.power, near);
     start.radiance = vec3(0.0);
     if (HAS_ENVIRONMENT) start.radiance = environment_radiance(-start.direction);
     outputs[i] = start;

@@ -35,7 +35,7 @@
 #define MEMBERS_AOVS X(albedo) X(normal) X(depth) X(hits) X(albedo_low) X(normal_low) X(depth_low) X(layer) X(layer_low)
 #define MEMBERS_FILM X(sum) X(low)
 #define MEMBERS_PATH_STATE X(origin) X(path) X(direction) X(flags) X(power) X(stored) X(power0) X(begin) X(next) \
-    X(near) X(met) X(media) X(gone) X(lamp)
+    X(near) X(met) X(media)
 #define MEMBERS_TRACE_STATE X(origin) X(flags) X(direction) X(density) X(throughput) X(distance) X(radiance) X(done) \
     X(sum) X(ended) X(light_rays) X(met) X(media)
 #define MEMBERS_CURSOR X(cell) X(photon)
