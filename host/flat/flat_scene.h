@@ -35,7 +35,9 @@ struct FlatScene {
     std::vector<gpu::TextureLookup> textures;
     std::vector<std::uint32_t> images;          // texels of all images, a word each
     std::vector<gpu::Light> lights;             // alias table; empty where nothing emits
-    std::vector<gpu::AskedLight> asked_lights;  // an alias table a group
+    std::vector<gpu::AskedLight> asked_lights;  // an alias table a lamp, or a group without a light tree
+    std::vector<gpu::LightBranch> light_tree;   // over local lights, where they are more than one lamp
+    std::vector<std::uint32_t> lamps;           // [triangles] there: the place of its lamp in the tree, or NO_LAMP
     std::vector<gpu::AskedGroup> asked;         // the groups of lights that there are
     double local_power = 0.0;                   // of the group of local lights, as light_power of all
     double environment_power = 0.0;

@@ -18,6 +18,7 @@
 #include "core/error.h"
 #include "flat/bounds.h"
 #include "flat/coincidence.h"
+#include "flat/direction.h"
 #include "flat/features.h"
 #include "flat/lights.h"
 #include "flat/surface.h"
@@ -27,20 +28,6 @@
 
 namespace vkcppm {
 namespace {
-
-/// Octahedral snorm16x2, as pack_direction of shaders/include/frame.glsl.
-std::uint32_t pack_direction(const glm::vec3& n) {
-    const float sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
-    glm::vec2 p(n.x / sum, n.y / sum);
-    if (n.z < 0.0f) {
-        p = glm::vec2((1.0f - std::abs(p.y)) * (p.x >= 0.0f ? 1.0f : -1.0f),
-                      (1.0f - std::abs(p.x)) * (p.y >= 0.0f ? 1.0f : -1.0f));
-    }
-    const auto snorm = [](float x) {
-        return std::uint32_t(std::int32_t(std::floor(std::clamp(x, -1.0f, 1.0f) * 32767.0f + 0.5f))) & 0xffffu;
-    };
-    return snorm(p.x) | snorm(p.y) << 16;
-}
 
 SceneFrame make_frame(const SceneBox& box) {
     SceneFrame frame;

@@ -81,7 +81,8 @@ Specialization scene_specialization(const FlatScene& scene, std::uint32_t featur
     return {{SPEC_WORKGROUP, workgroup},
             {SPEC_STACK, scene.bvh.stack},
             {SPEC_NODE_BITS, std::uint32_t(std::bit_width(scene.bvh.nodes.size() - 1))},
-            {SPEC_FEATURES, features}};
+            {SPEC_FEATURES, features},
+            {SPEC_LIGHT_TREE, scene.light_tree.empty() ? 0u : 1u}};
 }
 
 bool splits_near_lamps(const FlatScene& scene) {

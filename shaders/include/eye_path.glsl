@@ -216,8 +216,13 @@ void meet_emission(inout EyePath path, Vertex v) {
     if ((v.surface.front || has(v.material, SURFACE_DOUBLE_SIDED)) && sees_light(path.at.flags)) {
         vec3 met = met_radiance(v.material, v.surface, path.at.direction);
         if (met != vec3(0.0)) {
-            float density = EYE_PATHS_ASK ? met_density(v.material, v.surface, path.at.direction, path.at.leg) : 0.0;
-            find(path, throughput_of_met(path, density, asks_emitter(density)) * met, layer_of_met(path.at.flags));
+            AskedDensity asked = AskedDensity(0.0, 0.0);
+            if (EYE_PATHS_ASK) {
+                path.steps -= local_light_steps();
+                asked = met_density(v.hit.triangle, v.material, v.surface, path.at.direction, path.at.leg);
+            }
+            vec3 throughput = throughput_of_met(path, asked.density, asks_emitter(asked.of_lamp));
+            find(path, throughput * met, layer_of_met(path.at.flags));
         }
     }
 }
@@ -239,7 +244,7 @@ void weigh_lobes(inout EyePath path, inout Vertex v) {
 
 // What a sample of the light that arrives at the vertex brings, where nothing is in between.
 vec3 light_from(EyePath path, Vertex v, LightSample light) {
-    if (HAS_DIRECT && light.triangle != NO_TRIANGLE && !asks_emitter(light.density)) return vec3(0.0);
+    if (HAS_DIRECT && light.triangle != NO_TRIANGLE && !asks_emitter(light.of_lamp)) return vec3(0.0);
     uint part = HAS_DIRECT ? PART_ALL : PART_FOLLOWED;
     vec3 factor = light.radiance * rough_bsdf(v.bsdf, v.surface, v.wo, light.direction, part);
     factor *= abs(dot(light.direction, v.surface.normal)) *
@@ -262,7 +267,7 @@ void ask(inout EyePath path, Vertex v) {
         AskedGroup group = params.asked[g];
         uvec2 seeds = bits.xy;
         for (uint i = 0u; i < group.candidates; ++i) {
-            --path.steps;
+            path.steps -= 1 + int(group.depth);
             dimension += CANDIDATE_DIMENSIONS;
             vec4 u = random4(params.seed, launch.iteration, STREAM_EYE, pixel, dimension);
             uvec2 pair = sobol_pair(launch.iteration * group.candidates + i, seeds);

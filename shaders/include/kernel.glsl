@@ -20,10 +20,12 @@ layout(constant_id = SPEC_NODE_BITS) const uint NODE_BITS = 20;
 layout(constant_id = SPEC_LEVELS) const uint LEVELS = GRID_LEVELS;
 layout(constant_id = SPEC_WAITS) const uint WAITS = 0u;
 layout(constant_id = SPEC_DEALS) const uint DEALS = 1u;
+layout(constant_id = SPEC_LIGHT_TREE) const uint LIGHT_TREES = 0u;
 
 #define HAS_FEATURE(bit, NAME, words) const bool HAS_##NAME = (FEATURES & FEATURE_##NAME) != 0u;
 #define HAS_FEATURE_OF_MATERIAL(bit, NAME, words, trait) HAS_FEATURE(bit, NAME, words)
 FEATURE_TABLE(HAS_FEATURE_OF_MATERIAL, HAS_FEATURE, HAS_FEATURE)
+const bool HAS_LIGHT_TREE = LIGHT_TREES != 0u;
 const bool HAS_PUNCTUAL_LIGHTS = (FEATURES & FEATURES_OF_PUNCTUAL_LIGHTS) != 0u;
 const uint GROUPS = GROUPS_ASKED(FEATURES);
 const bool EYE_PATHS_ASK = ASKS_FOR_LIGHTS(FEATURES);

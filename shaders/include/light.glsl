@@ -8,6 +8,7 @@
 #include "include/entry.glsl"
 #include "include/environment.glsl"
 #include "include/frame.glsl"
+#include "include/light_tree.glsl"
 #include "include/rng.glsl"
 #include "include/sampling.glsl"
 #include "include/scene.glsl"
@@ -81,13 +82,15 @@ Light choose_light(uvec4 bits, out uint index) {
     return light;
 }
 
-// Lights that are asked for together are drawn in proportion to their power, too, by one word, of which the light keeps
-// what it has not used: equidistributed words stay so.
-uint choose_asked(AskedGroup group, inout uint word) {
-    if (group.count == 1u) return asked_lights_at(group.first).light;
+// The lights of a lamp are drawn in proportion to their power, too, by one word, of which the light keeps what it has
+// not used: equidistributed words stay so. power: of the lamp.
+uint choose_asked(Lamp lamp, inout uint word, out float power) {
+    AskedLight asked = asked_lights_at(lamp.first);
+    power = asked.power;
+    if (lamp.count == 1u) return asked.light;
     uint entry, low;
-    umulExtended(word, group.count, entry, low);
-    AskedLight asked = asked_lights_at(group.first + entry);
+    umulExtended(word, lamp.count, entry, low);
+    asked = asked_lights_at(lamp.first + entry);
     float share = float(low >> 8u) * 5.9604644775390625e-8;
     bool keeps = share < asked.keep;
     share = keeps ? share / asked.keep : (share - asked.keep) / (1.0 - asked.keep);
@@ -95,25 +98,45 @@ uint choose_asked(AskedGroup group, inout uint word) {
     return keeps ? asked.light : asked.alias_light;
 }
 
-// About the density, per area, in which points of an emitter are asked for: exact but for what textures vary.
-// emission: without textures.
-float emitter_density(vec3 emission, bool double_sided) {
+// Steps that it takes to find one, or how often it is asked for, beyond one.
+int local_light_steps() { return HAS_LIGHT_TREE ? int(params.asked[0].depth) : 0; }
+
+// About the density, per area, in which points of an emitter are asked for where its lamp is always asked for: exact
+// but for what textures vary. emission: without textures; power: of the lamp.
+float emitter_density(vec3 emission, bool double_sided, float power) {
     // Not the sum of the channels, which may be beyond floats.
-    return dot(emission / params.local_power, vec3(double_sided ? 2.0 * PI / 3.0 : PI / 3.0));
+    return dot(emission / power, vec3(double_sided ? 2.0 * PI / 3.0 : PI / 3.0));
 }
 
-// The same of a triangle that emits.
-float density_of(uint triangle, bool double_sided) {
-    SurfaceMaterial material = materials_at(material_of(texelFetch(shading_texels, int(triangle)).w));
-    return emitter_density(material.emission, double_sided);
+// Of a triangle that emits, without textures.
+vec3 emission_of(uint triangle) {
+    return materials_at(material_of(texelFetch(shading_texels, int(triangle)).w)).emission;
 }
 
-// The same per solid angle, 1/sr, for a ray that meets the emitter `distance` away.
-float met_density(SurfaceMaterial material, Surface surface, vec3 direction, float distance) {
+// The lamp in the light tree of a triangle that emits; NO_LAMP: there is no tree. power: of the lamp.
+uint lamp_with_power(uint triangle, out float power) {
+    uint lamp = HAS_LIGHT_TREE ? lamp_of(triangle) : NO_LAMP;
+    power = params.local_power;
+    if (HAS_LIGHT_TREE && lamp != NO_LAMP) power = asked_lights_at(first_of(lamp)).power;
+    return lamp;
+}
+
+// Densities, 1/sr, in which a direction to an emitter is asked for.
+struct AskedDensity {
+    float density;
+    float of_lamp;  // the same if its lamp was always asked for: include/direct.glsl
+};
+
+// Those of a triangle that emits, for a ray that meets it `distance` away.
+AskedDensity met_density(uint triangle, SurfaceMaterial material, Surface surface, vec3 direction, float distance) {
     // Without textures, as where the light is asked for.
     vec3 emission = HAS_TEXTURES ? materials_at(surface.material).emission : material.emission;
     float cosine = max(1e-12, -dot(direction, surface.geometric));
-    return emitter_density(emission, has(material, SURFACE_DOUBLE_SIDED)) * distance * distance / cosine;
+    float power;
+    uint lamp = lamp_with_power(triangle, power);
+    float of_lamp = emitter_density(emission, has(material, SURFACE_DOUBLE_SIDED), power);
+    of_lamp *= distance * distance / cosine;
+    return AskedDensity(of_lamp * lamp_probability(lamp, surface.position - distance * direction), of_lamp);
 }
 
 // The density, 1/sr, in which directions to the environment are asked for.
@@ -130,18 +153,22 @@ struct LightSample {
     vec3 radiance;    // over the density of the sample; of punctual lights the irradiance across it, over the
                       // probability
     float density;    // about that of the direction, 1/sr, the same function as of what a path meets; 0: punctual
+    float of_lamp;    // AskedDensity
     uint triangle;    // that the light is a part of; NO_TRIANGLE: none
 };
 
 // A light of the group, and a point in proportion to what is emitted there. bits: two random words, which may be
 // equidistributed; v: two numbers in [0, 1).
 LightSample sample_light(AskedGroup group, uvec2 bits, vec2 v, vec3 position) {
-    uint index = choose_asked(group, bits.x);
+    LightSample s = LightSample(vec3(0.0), FAR, vec3(0.0), 0.0, 0.0, NO_TRIANGLE);
+    Lamp lamp = choose_lamp(group, position, bits.x, v);
+    if (lamp.count == 0u) return s;
+    float power;
+    uint index = choose_asked(lamp, bits.x, power);
     Light light = lights_at(index);
-    light.power *= group.power / params.light_power;
+    light.power *= power / lamp.probability / params.light_power;
     vec2 u = unit_floats(bits.xyxy).xy;
     vec3 towards = light.position - position;
-    LightSample s = LightSample(vec3(0.0), FAR, vec3(0.0), 0.0, NO_TRIANGLE);
     if (HAS_AREA_LIGHTS && light.kind == LIGHT_TRIANGLE) {
         vec2 b = sample_triangle(u);
         towards += b.x * light.e1 + b.y * light.e2;
@@ -154,7 +181,9 @@ LightSample sample_light(AskedGroup group, uvec2 bits, vec2 v, vec3 position) {
         float inverse = cosine / (s.distance * s.distance);
         s.radiance = light.power * (inverse / (double_sided ? 2.0 * PI : PI));
         if (has_share(light)) s.radiance *= emitted_share(light, b, s.direction);
-        if (cosine > 0.0) s.density = density_of(s.triangle, double_sided) / inverse;
+        float density = emitter_density(emission_of(s.triangle), double_sided, power);
+        if (cosine > 0.0) s.of_lamp = density / inverse;
+        s.density = s.of_lamp * lamp.probability;
     }
     if ((HAS_POINT_LIGHTS || HAS_SPOT_LIGHTS) &&
         (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT)) {
@@ -200,7 +229,12 @@ uint emit(uvec4 bits, vec4 v, out vec3 origin, out vec3 direction, out vec3 powe
         vec3 local = sample_cosine(v.xy);
         direction = normalize(from_frame(n, local));
         if (HAS_SPLIT) near = params.near_lights;
-        if (HAS_DIRECT) near = near_emitter(density_of(lights_at(index).triangle, light.double_sided != 0u), local.z);
+        if (HAS_DIRECT) {
+            uint triangle = lights_at(index).triangle;
+            float of_lamp;
+            lamp_with_power(triangle, of_lamp);
+            near = near_emitter(emitter_density(emission_of(triangle), light.double_sided != 0u, of_lamp), local.z);
+        }
         // Off the emitter by its rounding error, as `leave` does; its error travels in e-vectors' scale.
         vec3 extent = abs(light.position) + abs(light.e1) + abs(light.e2);
         float error = 4.8e-7 * max(extent.x, max(extent.y, extent.z));

@@ -43,12 +43,12 @@ float met_weight(TraceState state, float light_density) {
 }
 
 // What an emitter sends along the ray that met it, weighed.
-vec3 met_emission(TraceState state, Surface surface, SurfaceMaterial material) {
+vec3 met_emission(TraceState state, uint triangle, Surface surface, SurfaceMaterial material) {
     bool double_sided = has(material, SURFACE_DOUBLE_SIDED);
     if (material.emission == vec3(0.0) || !(surface.front || double_sided)) return vec3(0.0);
     if (photons_bring_emission(state.flags, state.distance)) return vec3(0.0);
     return met_radiance(material, surface, state.direction) *
-           met_weight(state, met_density(material, surface, state.direction, state.distance));
+           met_weight(state, met_density(triangle, material, surface, state.direction, state.distance).density);
 }
 
 // Asks for a point of the lights of each group, weighed against meeting it. dimension: of the bounce.
@@ -119,7 +119,7 @@ bool meet(inout TraceState state, uint pixel, uint path, Hit hit, Surface surfac
         if ((state.flags & PATH_STRAIGHT) != 0u) state.radiance += state.throughput * material.color;
         alive = false;
     } else {
-        state.radiance += state.throughput * met_emission(state, surface, material);
+        state.radiance += state.throughput * met_emission(state, hit.triangle, surface, material);
         uint number = pixel + state.done * (params.width * params.height);
         Bsdf bsdf = bsdf_for_path(material, surface, STREAM_PATH, number, state.flags, state.media, state.throughput);
         LobeWeights lobes = lobes_of(bsdf, surface, -state.direction);
@@ -160,7 +160,7 @@ void main() {
     int steps = int(params.step_budget);
     while (state.done < launch.paths) {
         bool fresh = steps == int(params.step_budget);
-        steps -= vertex_steps();
+        steps -= vertex_steps() + 2 * local_light_steps();
         if (steps < 0) {
             block_after(PASS_TRACE);
             break;

@@ -83,11 +83,15 @@
 // [ERROR_GROUPS x pixels] where errors are estimated: sums over the iterations of a group, of radiance in x, y and z,
 // of the bias of its luminance in w (include/error_groups.glsl).
 #define ERRORS(ROW)            ROW(45, errors, vec4, pixel, error_groups, records, carried, update)
+// Of the scene again, where lights are in a tree: of a triangle its lamp, branch << 1 | which
+// child, or NO_LAMP.
+#define LIGHT_TREE(ROW)        ROW(46, light_tree, LightBranch, light, uploaded, uint_texels, scratch, never)
+#define LAMPS(ROW)             ROW(47, lamps, uint, triangle, uploaded, word_texels, scratch, never)
 
 #define FIRST_SCENE_BUFFERS(ROW)                                                                             \
     TRIANGLES(ROW) SHADING(ROW) TEXCOORDS(ROW) VERTEX_COLORS(ROW) TANGENTS(ROW) MATERIALS(ROW) TEXTURES(ROW) \
     IMAGES(ROW) LIGHTS(ROW) ENVIRONMENT(ROW) ENVIRONMENT_ALIAS(ROW) ASKED_LIGHTS(ROW)
-#define SCENE_BUFFERS(ROW) FIRST_SCENE_BUFFERS(ROW) INSTANCES(ROW)
+#define SCENE_BUFFERS(ROW) FIRST_SCENE_BUFFERS(ROW) INSTANCES(ROW) LIGHT_TREE(ROW) LAMPS(ROW)
 #define BUFFERS(ROW)                                                                                      \
     PARAMS(ROW) STATUS(ROW) GRID(ROW) NODES(ROW) FIRST_SCENE_BUFFERS(ROW)                                 \
     HIT_POSITION(ROW) HIT_WEIGHT(ROW) HIT_EMISSION(ROW) AOVS(ROW) HIT_SURFACE(ROW) EYE_PATHS(ROW)         \
@@ -95,7 +99,7 @@
     IMAGE(ROW) TRACES(ROW)                                                                                \
     PATHS(ROW) PHOTONS(ROW) PHOTON_FLUX(ROW) SORTED(ROW) SORTED_FLUX(ROW) PAIRS_A(ROW) PAIRS_B(ROW)       \
     COUNTERS(ROW) QUANTILES(ROW) SEARCH_STATES(ROW) LIGHT_RAYS(ROW) INSTANCES(ROW)                        \
-    HIT_INSTANCE(ROW) ERRORS(ROW)
+    HIT_INSTANCE(ROW) ERRORS(ROW) LIGHT_TREE(ROW) LAMPS(ROW)
 // clang-format on
 
 // PARAMS(BINDING_NUMBER): its binding.

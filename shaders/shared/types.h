@@ -47,6 +47,7 @@ using uint = std::uint32_t;
 #define SPEC_LEVELS 7     // of the grid that there is room for
 #define SPEC_WAITS 8      // 1: lanes of the photon pass wait for the longest ray of their SIMD group
 #define SPEC_DEALS 9      // 1: lanes of the photon pass share the light paths of their SIMD group
+#define SPEC_LIGHT_TREE 10 // 1: local lights are asked for down a light tree
 
 // Features of a scene or of its settings: a pipeline holds only what its scene needs, and buffers that only a feature
 // reads are empty without it. FEATURE_<NAME> is its bit, HAS_<NAME> (include/kernel.glsl) whether a kernel has it.
@@ -317,19 +318,35 @@ RECORD(Light)
 // scene's bounds, tells little of what arrives indoors.
 #define ASKED_GROUPS 3u  // at most
 struct AskedGroup {
-    uint first;       // of asked_lights
+    uint first;       // of asked_lights, and how many: of a lamp, where there is no tree
     uint count;
     uint candidates;  // of which an eye path takes one
-    float power;      // of all of them, mean channel, W (frame-scaled): they are asked for in proportion to theirs
+    uint depth;       // of the light tree, branches; 0: there is none
 };
 
-// An entry of the alias table of a group; the numbers are of lights.
+// An entry of the alias table of a lamp: lights that are drawn in proportion to their power. The numbers are of lights.
 #define FIELDS_AskedLight(FIELD, ARRAY, OPTIONAL) \
     FIELD(uint, light) \
     FIELD(float, keep)        /* probability to keep this light */ \
     FIELD(uint, alias_light)  /* the other */ \
-    FIELD(uint, unused)
+    FIELD(float, power)       /* of the lamp, mean channel, W (frame-scaled) */
 RECORD(AskedLight)
+
+// A branch of the light tree, of two children, each a branch or a lamp (include/light_tree.glsl): 80 bytes, read as 5
+// texels. The first is the root.
+#define FIELDS_LightBranch(FIELD, ARRAY, OPTIONAL) \
+    ARRAY(ANY_FEATURE, vec4, sphere, 2)  /* about its lights: centre, radius */ \
+    ARRAY(ANY_FEATURE, uint, axis, 2)    /* of the cone of their normals, octahedral snorm16x2 */ \
+    /* cosine of that cone, snorm16 | cosine of how far from a normal they shine, 15 bits << 16 | LIGHT_BOTH_SIDES */ \
+    ARRAY(ANY_FEATURE, uint, cones, 2) \
+    ARRAY(ANY_FEATURE, float, reach, 2)  /* beyond which they shed no light, frame units */ \
+    ARRAY(ANY_FEATURE, uint, first, 2)   /* of asked_lights, or the branch */ \
+    ARRAY(ANY_FEATURE, uint, count, 2)   /* of these; 0: it is a branch */ \
+    FIELD(float, ratio)                  /* intensity of the second over that of the first */ \
+    FIELD(uint, parent)                  /* its branch << 1 | which child this is */
+RECORD(LightBranch)
+#define LIGHT_BOTH_SIDES 0x80000000u
+#define NO_LAMP 0xffffffffu  // in place of a branch << 1 | which child
 
 // A stored photon: what the distance test reads (16 bytes) and what an accepted photon adds (16 bytes).
 #define FIELDS_Photon(FIELD, ARRAY, OPTIONAL) \
@@ -662,7 +679,7 @@ static_assert(sizeof(BvhNode) == 64 && sizeof(InstanceNode) == 64 && sizeof(Inst
 static_assert(sizeof(TriangleGeometry) == 48);
 static_assert(sizeof(TriangleShading) == 16);
 static_assert(sizeof(SurfaceMaterial) == 208 && sizeof(TextureLookup) == 48 && sizeof(Light) == 96);
-static_assert(sizeof(AskedLight) == 16);
+static_assert(sizeof(AskedLight) == 16 && sizeof(LightBranch) == 80);
 static_assert(sizeof(Photon) == 16 && sizeof(PhotonFlux) == 16);
 static_assert(sizeof(HitPosition) == 16 && sizeof(HitWeight) == 16 && sizeof(HitEmission) == 16 &&
               sizeof(HitSurface) == 16);

@@ -21,6 +21,7 @@
 #include "support/files/evidence.h"
 #include "support/files/places.h"
 #include "support/scenes/expectation.h"
+#include "support/scenes/lamps.h"
 #include "support/scenes/rooms.h"
 #include "support/scenes/scenes.h"
 #include "support/scenes/shapes.h"
@@ -59,6 +60,15 @@ Reference refer(const Scene& scene, const Settings& settings, std::uint32_t iter
     wanted.render.photons = photons;
     wanted.samples = 128;
     return make_reference(scene, wanted, plain_device(), [](const ReferenceProgress&) { return true; });
+}
+
+TEST(PathTracerLamps, OfManyAgreeWithDoublePrecision) {
+    for (const Scene& scene : {many_lamp_room(40), lamps_over_metal(0.5f)}) {
+        Settings settings;
+        settings.size = Extent{16, 16};
+        expect_blocks_agree(trace_on_device(scene, settings), trace_in_double(scene, settings, 4 * samples),
+                            {.side = 8, .level = 1e-4, .bias = 1e-6}, "device over double");
+    }
 }
 
 class PathTracerRooms : public testing::TestWithParam<Case> {};

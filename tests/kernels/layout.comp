@@ -31,6 +31,8 @@ void bump(inout uint a[RADIUS_BINS]) { for (int i = 0; i < RADIUS_BINS; ++i) a[i
 void bump(inout float a[MAX_RINGS]) { for (int i = 0; i < MAX_RINGS; ++i) a[i] += float(++ordinal); }
 void bump(inout vec3 a[LAYERS]) { for (int i = 0; i < LAYERS; ++i) bump(a[i]); }
 void bump(inout vec3 a[3]) { for (int i = 0; i < 3; ++i) bump(a[i]); }
+void bump(inout vec4 a[2]) { for (int i = 0; i < 2; ++i) bump(a[i]); }
+void bump(inout float a[2]) { for (int i = 0; i < 2; ++i) a[i] += float(++ordinal); }
 void bump(inout vec2 a[3]) { for (int i = 0; i < 3; ++i) bump(a[i]); }
 void bump(inout vec2 a[MAX_SECTORS / 2]) { for (int i = 0; i < MAX_SECTORS / 2; ++i) bump(a[i]); }
 void bump(inout vec2 a[MAX_SECTORS]) { for (int i = 0; i < MAX_SECTORS; ++i) bump(a[i]); }
@@ -79,12 +81,13 @@ BLOCK(FIRST + 20, TextureLookupBlock, TextureLookup, texture_lookups)
 BLOCK(FIRST + 21, HitSurfaceBlock, HitSurface, hit_surfaces)
 BLOCK(FIRST + 22, TraceStateBlock, TraceState, trace_states)
 BLOCK(FIRST + 23, LightRayBlock, LightRay, light_rays)
-// The rows of this number and of the one for instances are read as texels alone.
+// The rows of this number and of the one for instances are read as texels alone; beyond the last row there is none.
 BLOCK(ERRORS(BINDING_NUMBER), EyeStateBlock, EyeState, eye_states)
 BLOCK(FIRST + 25, SearchStateBlock, SearchState, search_states)
 BLOCK(FIRST + 26, AskedLightBlock, AskedLight, asked_lights)
 BLOCK(GRID(BINDING_NUMBER), InstanceBlock, Instance, instance_records)
 BLOCK(FIRST + 28, InstanceNodeBlock, InstanceNode, instance_nodes)
+BLOCK(STATUS(BINDING_NUMBER), LightBranchBlock, LightBranch, light_branches)
 
 void main() {
     if (gl_GlobalInvocationID.x != 0u) return;
@@ -117,6 +120,7 @@ void main() {
     ROUND_TRIP(EyeState, eye_states, MEMBERS_EYE_STATE)
     ROUND_TRIP(SearchState, search_states, MEMBERS_SEARCH_STATE)
     ROUND_TRIP(AskedLight, asked_lights, MEMBERS_ASKED_LIGHT)
+    ROUND_TRIP(LightBranch, light_branches, MEMBERS_LIGHT_BRANCH)
     BUMP(Params, params, params_array[4], MEMBERS_PARAMS)
     BUMP(Launch, launch, launches[4], MEMBERS_LAUNCH)
 }

@@ -18,8 +18,9 @@
 #define MEMBERS_TEXTURE_LOOKUP X(first) X(width) X(height) X(flags) X(matrix) X(offset) X(unused)
 #define MEMBERS_LIGHT X(position) X(kind) X(e1) X(keep) X(e2) X(alias_entry) X(power) X(double_sided) X(corner) \
     X(triangle) X(textured)
-#define MEMBERS_ASKED_GROUP X(first) X(count) X(candidates) X(power)
-#define MEMBERS_ASKED_LIGHT X(light) X(keep) X(alias_light) X(unused)
+#define MEMBERS_ASKED_GROUP X(first) X(count) X(candidates) X(depth)
+#define MEMBERS_ASKED_LIGHT X(light) X(keep) X(alias_light) X(power)
+#define MEMBERS_LIGHT_BRANCH X(sphere) X(axis) X(cones) X(reach) X(first) X(count) X(ratio) X(parent)
 #define MEMBERS_LIGHT_RAY X(origin) X(distance) X(direction) X(triangle) X(light) X(layer)
 #define MEMBERS_LIGHT_RAYS X(of)
 #define MEMBERS_PHOTON X(position) X(normal)

@@ -42,6 +42,7 @@ VISITOR(Light, MEMBERS_LIGHT)
 VISITOR(AskedGroup, MEMBERS_ASKED_GROUP)
 template <typename Visit> void scalars(gpu::AskedGroup& group, Visit visit) { each_scalar(group, visit); }
 VISITOR(AskedLight, MEMBERS_ASKED_LIGHT)
+VISITOR(LightBranch, MEMBERS_LIGHT_BRANCH)
 VISITOR(LightRay, MEMBERS_LIGHT_RAY)
 template <typename Visit> void scalars(gpu::LightRay& ray, Visit visit) { each_scalar(ray, visit); }
 VISITOR(LightRays, MEMBERS_LIGHT_RAYS)
@@ -84,6 +85,7 @@ template <typename S> S bumped(S value) {
 /// The storage buffer that block `index` of layout.comp is bound to.
 Binding block(std::uint32_t index) {
     const auto binding = Binding(std::uint32_t(Binding::hit_position) + index);
+    if (binding == Binding::errors) return Binding::status;
     // Those two are read as texels alone.
     return binding == Binding::instances ? Binding::grid : binding == Binding::quantiles ? Binding::errors : binding;
 }
@@ -126,7 +128,8 @@ protected:
         F(7, HitPosition) F(8, HitWeight) F(9, HitEmission) F(10, Gathered) F(11, PixelState) F(12, Aovs) F(13, Film) \
             F(14, PathState) F(15, Cursor) F(16, Grid) F(17, Status) F(18, Params) F(19, Launch)                      \
                 F(20, TextureLookup) F(21, HitSurface) F(22, TraceState) F(23, LightRay) \
-                    F(24, EyeState) F(25, SearchState) F(26, AskedLight) F(27, Instance) F(28, InstanceNode)
+                    F(24, EyeState) F(25, SearchState) F(26, AskedLight) F(27, Instance) F(28, InstanceNode) \
+                        F(29, LightBranch)
 // clang-format on
 
 TEST_F(Layout, EveryMemberStandsWhereTheHostPutsIt) {

@@ -67,6 +67,20 @@ struct EmitOutput {
     vec3 radiance;  // of the environment, against the direction
 };
 
+struct LampInput {
+    vec3 position;
+    uint lamp;  // branch << 1 | which child
+    uint word;
+    vec2 v;
+};
+struct LampOutput {
+    uint first;  // of the lamp that the word chooses; count 0: none
+    uint count;
+    float probability;
+    uint word;       // what is left of it
+    float of_input;  // the probability of the input's lamp
+};
+
 struct ScatterInput {
     vec3 direction;
     vec3 normal;

@@ -39,7 +39,11 @@ Probe::Probe(std::string name, std::span<const std::uint32_t> spirv, std::uint32
     : bindings_(device()),
       commands_(device(), bindings_),
       kernel_(device(), std::move(name), spirv,
-              {{SPEC_WORKGROUP, 64}, {SPEC_STACK, stack}, {SPEC_FEATURES, features}, {SPEC_NODE_BITS, node_bits}}) {
+              {{SPEC_WORKGROUP, 64},
+               {SPEC_STACK, stack},
+               {SPEC_FEATURES, features},
+               {SPEC_NODE_BITS, node_bits},
+               {SPEC_LIGHT_TREE, 1}}) {
     create(Binding::params, sizeof(gpu::Params));
     create(Binding::status, sizeof(gpu::Status));
 }
