@@ -1,6 +1,6 @@
 """Writes a glTF scene of many lamps: a closed hall of 12 m x 4 m x 30 m with eight cubes, and square lamps of up to
-12 cm below its ceiling and before two walls. By hand: many_lamps.py OUT.gltf LAMPS [--decades N], where powers differ by
-up to N decades; or --table, one lamp over a table beside a point light outside of a million times its power."""
+12 cm below its ceiling and before two walls. By hand: many_lamps.py OUT.gltf LAMPS [--decades N], where powers differ
+by up to N decades; or --table: one lamp over a table beside a point light outside of a million times its power."""
 
 import argparse
 import base64
