@@ -20,12 +20,20 @@ public:
     std::uint32_t add(const std::optional<Texture>& texture, bool srgb);
 
     const std::vector<gpu::TextureLookup>& lookups() const { return lookups_; }
-    /// Images that are looked up, one after the other, a word a texel (red in the lowest byte).
+    /// Planes that are looked up, one after the other, a word a texel (red in the lowest byte): of an image of 8 bits
+    /// one, of 16 bits two, the second with what they have beyond 8. Colours of 16 bits are linear there.
     std::vector<std::uint32_t> take_texels() { return std::move(texels_); }
 
 private:
     const Scene& scene_;
-    std::vector<std::uint32_t> first_;  // texel of each image; none: not yet there
+    /// First texels.
+    struct Planes {
+        std::uint32_t first, fine;
+    };
+    Planes planes_of(std::uint32_t image, bool srgb);
+    std::uint32_t append(const void* plane, std::size_t bytes);
+
+    std::vector<std::optional<Planes>> data_, colors_;  // of each image as it is, and of 16 bits made linear
     std::vector<gpu::TextureLookup> lookups_;
     std::vector<std::uint32_t> texels_;
 };

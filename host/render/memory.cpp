@@ -45,7 +45,7 @@ std::uint32_t features_before(const Scene& scene, const Settings& settings) {
 /// What the scene takes at least: triangles that lie on one another are one, nodes of its BVH come on top.
 std::uint64_t least_bytes(const Scene& scene) {
     std::uint64_t bytes = 0;
-    for (const TextureImage& image : scene.images) bytes += image.size.pixels() * sizeof(std::uint32_t);
+    for (const TextureImage& image : scene.images) bytes += image.size.pixels() * (image.rest.empty() ? 4 : 8);
     return bytes;
 }
 

@@ -27,6 +27,8 @@ struct TextureImage {
     std::string name;
     Extent size;
     std::vector<std::uint8_t> rgba;  // [4 x pixels]
+    // [4 x pixels] what 16 bits a channel have beyond these: a value is rgba / 255 + rest / 65535. Empty: nothing.
+    std::vector<std::int8_t> rest = {};
 };
 
 /// One use of an image by a material: where to look it up and how. uv' = matrix * uv + offset (KHR_texture_transform),

@@ -21,6 +21,7 @@ layout(constant_id = SPEC_LEVELS) const uint LEVELS = GRID_LEVELS;
 layout(constant_id = SPEC_WAITS) const uint WAITS = 0u;
 layout(constant_id = SPEC_DEALS) const uint DEALS = 1u;
 layout(constant_id = SPEC_LIGHT_TREE) const uint LIGHT_TREES = 0u;
+layout(constant_id = SPEC_PLANES) const uint PLANES = 2u;
 
 #define HAS_FEATURE(bit, NAME, words) const bool HAS_##NAME = (FEATURES & FEATURE_##NAME) != 0u;
 #define HAS_FEATURE_OF_MATERIAL(bit, NAME, words, trait) HAS_FEATURE(bit, NAME, words)

@@ -48,6 +48,7 @@ using uint = std::uint32_t;
 #define SPEC_WAITS 8      // 1: lanes of the photon pass wait for the longest ray of their SIMD group
 #define SPEC_DEALS 9      // 1: lanes of the photon pass share the light paths of their SIMD group
 #define SPEC_LIGHT_TREE 10 // 1: local lights are asked for down a light tree
+#define SPEC_PLANES 11    // 2 where an image of this scene has two: TextureLookup::fine
 
 // Features of a scene or of its settings: a pipeline holds only what its scene needs, and buffers that only a feature
 // reads are empty without it. FEATURE_<NAME> is its bit, HAS_<NAME> (include/kernel.glsl) whether a kernel has it.
@@ -164,6 +165,8 @@ FEATURE_TABLE(FEATURE_BIT_OF_MATERIAL, FEATURE_BIT, FEATURE_BIT)
 #define TEXTURE_NEAREST 0x10u
 #define TEXTURE_SECOND_UV 0x20u
 #define TEXTURE_SRGB 0x40u       // its red, green and blue are sRGB-encoded
+// Of a texel's second plane, whose bytes of -127 to 127 are in units of 1 / 65535.
+#define FINE_SCALE (127.0f / 65535.0f)
 #define WRAP_REPEAT 0u
 #define WRAP_MIRRORED 1u
 #define WRAP_CLAMP 2u
@@ -290,7 +293,8 @@ RECORD(SurfaceMaterial)
     FIELD(uint, flags)                   /* TEXTURE_* */ \
     FIELD(vec4, matrix)                  /* rows */ \
     FIELD(vec2, offset) \
-    ARRAY(ANY_FEATURE, uint, unused, 2)
+    FIELD(uint, fine)                    /* texel of its second plane, what 16 bits have beyond 8; 0: none */ \
+    FIELD(uint, unused)
 RECORD(TextureLookup)
 
 // One entry of the alias table of lights; 96 bytes, read as 6 uvec4 texels, of which photons read two for textured

@@ -15,7 +15,7 @@
     X(opacity) X(absorption) X(cauchy) X(clearcoat) X(clearcoat_roughness) X(alpha_cutoff) X(normal_scale) X(texture) \
     X(clearcoat_normal_scale) X(priority) X(iridescence) X(anisotropy) X(film_index) X(film_thickness) X(sheen_color) \
     X(sheen_roughness)
-#define MEMBERS_TEXTURE_LOOKUP X(first) X(width) X(height) X(flags) X(matrix) X(offset) X(unused)
+#define MEMBERS_TEXTURE_LOOKUP X(first) X(width) X(height) X(flags) X(matrix) X(offset) X(fine) X(unused)
 #define MEMBERS_LIGHT X(position) X(kind) X(e1) X(keep) X(e2) X(alias_entry) X(power) X(double_sided) X(corner) \
     X(triangle) X(textured)
 #define MEMBERS_ASKED_GROUP X(first) X(count) X(candidates) X(depth)

@@ -1,7 +1,6 @@
 #include "oracle/texture.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -25,17 +24,7 @@ std::int64_t wrapped(std::int64_t i, std::int64_t size, Texture::Wrap wrap) {
     return 0;
 }
 
-double decode_srgb(std::uint8_t byte) {
-    static const auto table = [] {
-        std::array<double, 256> linear{};
-        for (int i = 0; i < 256; ++i) {
-            const double x = i / 255.0;
-            linear[i] = x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
-        }
-        return linear;
-    }();
-    return table[byte];
-}
+double decode_srgb(double x) { return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4); }
 
 }  // namespace
 
@@ -45,10 +34,12 @@ glm::dvec4 lookup(const Texture& texture, const TextureImage& image, const glm::
     const auto texel = [&](double x, double y) {
         const auto column = wrapped(std::int64_t(x), image.size.width, texture.wrap_s);
         const auto row = wrapped(std::int64_t(y), image.size.height, texture.wrap_t);
-        const std::uint8_t* rgba = &image.rgba[4 * (std::size_t(row) * image.size.width + column)];
+        const std::size_t first = 4 * (std::size_t(row) * image.size.width + column);
+        const std::uint8_t* rgba = &image.rgba[first];
         glm::dvec4 value = glm::dvec4(rgba[0], rgba[1], rgba[2], rgba[3]) / 255.0;
+        for (int c = 0; c < 4 && !image.rest.empty(); ++c) value[c] += image.rest[first + c] / 65535.0;
         if (encoding == Encoding::srgb) {
-            value = {decode_srgb(rgba[0]), decode_srgb(rgba[1]), decode_srgb(rgba[2]), value.a};
+            value = {decode_srgb(value.r), decode_srgb(value.g), decode_srgb(value.b), value.a};
         }
         return value;
     };

@@ -20,8 +20,9 @@ namespace {
 
 /// Constants of a scene with those features.
 Specialization constants_of(std::uint32_t features) {
-    return {{SPEC_WORKGROUP, 64}, {SPEC_STACK, 11}, {SPEC_RINGS, 2},      {SPEC_SECTORS, 6}, {SPEC_FEATURES, features},
-            {SPEC_NODE_BITS, 9},  {SPEC_LEVELS, 3}, {SPEC_DIGIT_BITS, 7}, {SPEC_WAITS, 1},   {SPEC_DEALS, 1}};
+    return {{SPEC_WORKGROUP, 64},      {SPEC_STACK, 11},    {SPEC_RINGS, 2},  {SPEC_SECTORS, 6},
+            {SPEC_FEATURES, features}, {SPEC_NODE_BITS, 9}, {SPEC_LEVELS, 3}, {SPEC_DIGIT_BITS, 7},
+            {SPEC_WAITS, 1},           {SPEC_DEALS, 1},     {SPEC_PLANES, 1}};
 }
 
 /// What constants can differ in: no feature, all, each alone, some of a kind together, and limits of all others.

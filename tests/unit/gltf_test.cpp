@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <numbers>
@@ -72,6 +74,23 @@ TEST(Gltf, ReadsEmbeddedExternalAndContainedBuffersAlike) {
         const Scene scene = load_gltf(folder / name);
         expect_corners(scene, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
         EXPECT_EQ(scene.file, folder / name);
+    }
+}
+
+TEST(Gltf, ReadsChunksWhoseLengthDoesNotCountTheirPadding) {
+    const std::string glb = test::one_triangle().glb();
+    const auto word = [](std::size_t value) {
+        return std::string{char(value), char(value >> 8), char(value >> 16), char(value >> 24)};
+    };
+    std::uint32_t json_size;
+    std::memcpy(&json_size, glb.data() + 12, sizeof json_size);
+    std::string json = glb.substr(20, json_size);
+    json.erase(json.find_last_of('}') + 1);
+    if (json.size() % 4 == 0) json.insert(json.size() - 1, " ");
+    const std::string padding(4 - json.size() % 4, ' '), binary = glb.substr(20 + json_size);
+    for (const std::string& between : {std::string(), padding}) {
+        const std::string chunks = word(json.size()) + "JSON" + json + between + binary;
+        EXPECT_EQ(load_text("glTF" + word(2) + word(12 + chunks.size()) + chunks).triangles.size(), 1u);
     }
 }
 
@@ -291,6 +310,12 @@ TEST(Gltf, ReadsInterleavedAttributes) {
     expect_corners(scene, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
     ASSERT_EQ(scene.normals.size(), 3u);
     for (const glm::vec3& normal : scene.normals) EXPECT_EQ(normal, glm::vec3(0, 0, 1));
+}
+
+TEST(Gltf, AStrideOfZeroIsNone) {
+    GltfBuilder builder = test::one_triangle();
+    builder.document["bufferViews"][0]["byteStride"] = 0;
+    expect_corners(load(builder), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
 }
 
 TEST(Gltf, AppliesSparseValuesOverABaseAndOverZeros) {
@@ -704,6 +729,19 @@ TEST(Gltf, SkipsASpotLightWithoutACone) {
     ASSERT_EQ(scene.lights.size(), 1u);
     EXPECT_EQ(scene.lights[0].kind, PunctualLight::Kind::point);
     EXPECT_ONE_WARNING(scene, "lights[0].spot.outerConeAngle = 0", "skipped");
+}
+
+TEST(Gltf, SkipsALightThatTakesLightAway) {
+    GltfBuilder builder = test::one_triangle();
+    builder.document["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", -2}},
+                                                                       {{"type", "directional"}}};
+    for (const int light : {0, 1}) {
+        builder.add("nodes", {{"extensions", {{"KHR_lights_punctual", {{"light", light}}}}}});
+    }
+    const Scene scene = load(builder);
+    ASSERT_EQ(scene.lights.size(), 1u);
+    EXPECT_EQ(scene.lights[0].kind, PunctualLight::Kind::directional);
+    EXPECT_ONE_WARNING(scene, "lights[0].intensity = -2", "skipped");
 }
 
 // ---- extensions ----

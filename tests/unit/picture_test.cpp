@@ -21,10 +21,9 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
 }
 
 Texels texels_of(const std::string& file) {
-    std::string flaw;
-    Texels texels = decode_picture(bytes_of(file), flaw);
-    EXPECT_EQ(flaw, "");
-    return texels;
+    Picture picture = decode_picture(bytes_of(file));
+    EXPECT_EQ(picture.flaw, "");
+    return picture.rgba;
 }
 
 /// Why a file is refused; empty where it is not.
@@ -57,6 +56,29 @@ TEST(Picture, RoundsSixteenBitsToEight) {
     // v / 257, rounded: 0x7fff is 127.498, 0x8000 is 127.502, 0x0081 is 0.502.
     const Texels rows = {0x7f, 0xff, 0x80, 0x00, 0xff, 0xff, 0x00, 0x81};
     EXPECT_EQ(texels_of(test::encode_png({1, 1}, {PNG_COLOR_TYPE_RGBA, 16}, rows)), (Texels{127, 128, 255, 1}));
+}
+
+TEST(Picture, KeepsWhatSixteenBitsHaveBeyondEight) {
+    Texels rows;
+    for (int i = 0; i < 65536; ++i) rows.insert(rows.end(), {std::uint8_t(i >> 8), std::uint8_t(i & 255)});
+    const std::string file = test::encode_png({256, 256}, {PNG_COLOR_TYPE_GRAY, 16}, rows);
+    EXPECT_TRUE(has_16_bits(bytes_of(file)));
+    const Picture picture = decode_picture(bytes_of(file));
+    ASSERT_EQ(picture.rest.size(), picture.rgba.size());
+    for (int i = 0; i < 65536; ++i) {
+        const std::size_t red = 4 * std::size_t(i);
+        // A byte has 256 values, and 257 of 65,536 are nearest to one of 256: those half-way are off by one.
+        EXPECT_NEAR(257 * picture.rgba[red] + picture.rest[red], i, 1) << i;
+        EXPECT_EQ(picture.rest[red + 1], picture.rest[red]) << i;
+        EXPECT_EQ(picture.rest[red + 3], 0) << i;  // opaque
+    }
+}
+
+TEST(Picture, SixteenBitsThatEightHoldAreEight) {
+    const Texels rows = {0x7f, 0x7f, 0xff, 0xff, 0x00, 0x00, 0x81, 0x81};
+    const Picture picture = decode_picture(bytes_of(test::encode_png({1, 1}, {PNG_COLOR_TYPE_RGBA, 16}, rows)));
+    EXPECT_EQ(picture.rgba, (Texels{127, 255, 0, 129}));
+    EXPECT_TRUE(picture.rest.empty());
 }
 
 TEST(Picture, ReadsAPaletteWithTransparencyAndATransparentGrey) {
@@ -164,9 +186,9 @@ TEST(Picture, TakesAJpegWithBytesTooMany) {
     const std::string jpeg = test::encode_jpeg({8, 8}, Texels(64, 77), true);
     std::string padded = jpeg;
     padded.insert(padded.size() - 2, 16, 'x');  // before the mark of its end
-    std::string flaw;
-    EXPECT_EQ(decode_picture(bytes_of(padded), flaw), texels_of(jpeg));
-    EXPECT_NE(flaw.find("extraneous"), std::string::npos) << flaw;
+    const Picture picture = decode_picture(bytes_of(padded));
+    EXPECT_EQ(picture.rgba, texels_of(jpeg));
+    EXPECT_NE(picture.flaw.find("extraneous"), std::string::npos) << picture.flaw;
     EXPECT_EQ(texels_of(jpeg + "and more"), texels_of(jpeg));
 }
 

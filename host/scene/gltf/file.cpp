@@ -65,7 +65,6 @@ Container split_glb(std::span<const std::uint8_t> bytes, const std::string& file
             bad_scene(file, object + " length", fmt::to_string(size),
                       fmt::format("{} bytes are left", length - offset));
         }
-        if (size % 4 != 0) bad_scene(file, object + " length", fmt::to_string(size), "it must be a multiple of 4");
         if ((chunk == 0) != (type == json_type)) {
             bad_scene(file, object + " type", fmt::format("{:#010x}", type),
                       fmt::format("the first chunk, and no other, is JSON ({:#010x})", json_type));
@@ -73,6 +72,12 @@ Container split_glb(std::span<const std::uint8_t> bytes, const std::string& file
         if (chunk == 0) container.json = bytes.subspan(offset, size);
         if (chunk == 1 && type == binary_type) container.binary = bytes.subspan(offset, size);
         offset += size;
+        // Some writers count no padding into a chunk's length, and some of those pad all the same.
+        const std::size_t padded = std::min<std::size_t>((offset + 3) / 4 * 4, length);
+        const auto is_binary_at = [&](std::size_t next) {
+            return length - next >= chunk_header_size && read_u32(bytes, next + 4) == binary_type;
+        };
+        if (!is_binary_at(offset)) offset = padded;
     }
     if (chunk == 0) bad_scene(file, "the GLB length", fmt::to_string(length), "it has no JSON chunk");
     return container;

@@ -90,7 +90,8 @@ std::optional<std::uint32_t> GltfImages::add(Source source) {
                       fmt::format("its {} bytes hold {} texels at most", bytes.size(), most));
         }
         bytes_ += bytes.size();
-        check_total(texels_ += size.pixels(), max_texels(bytes_), "texels, with those of " + object, file_.name);
+        texels_ += size.pixels() * (has_16_bits(bytes) ? 2 : 1);
+        check_total(texels_, max_texels(bytes_), "texels, with those of " + object, file_.name);
         images_.push_back({name, size, {}});
         sources_.push_back(std::move(source));
         return std::uint32_t(images_.size() - 1);
@@ -105,8 +106,14 @@ std::vector<TextureImage> GltfImages::take_images() {
     std::vector<std::string> broken(images_.size()), flaws(images_.size());  // why; empty: it is not
     tbb::parallel_for(std::size_t(0), images_.size(), [&](std::size_t i) {
         try {
-            images_[i].rgba = decode_picture(sources_[i].bytes, flaws[i]);
-            if (sources_[i].glossiness) make_roughness(images_[i].rgba, *sources_[i].glossiness);
+            Picture picture = decode_picture(sources_[i].bytes);
+            images_[i].rgba = std::move(picture.rgba);
+            flaws[i] = std::move(picture.flaw);
+            if (sources_[i].glossiness) {
+                make_roughness(images_[i].rgba, *sources_[i].glossiness);
+            } else {
+                images_[i].rest = std::move(picture.rest);
+            }
             Bytes().swap(sources_[i].own_bytes);
         } catch (const std::runtime_error& error) {
             broken[i] = error.what();

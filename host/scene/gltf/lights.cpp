@@ -86,6 +86,11 @@ std::optional<PunctualLight> read_light(const GltfFile& file, const tinygltf::Mo
                  : source.type == "spot" ? PunctualLight::Kind::spot
                                          : PunctualLight::Kind::directional;
     light.name = source.name.empty() ? node.name : source.name;
+    if (source.intensity < 0.0) {
+        warnings.add("its light is skipped, none takes light away",
+                     fmt::format("{}.intensity = {}", object, source.intensity));
+        return std::nullopt;
+    }
     const glm::dvec3 color = source.color.empty() ? glm::dvec3(1.0) : glm::make_vec3(source.color.data());
     light.intensity =
         emitted(color, source.intensity / per_watt, object + ".color", object + ".intensity", file.name, warnings);

@@ -1,6 +1,5 @@
 #include "scene/gltf/picture.h"
 
-#include <algorithm>
 #include <array>
 #include <csetjmp>
 #include <cstring>
@@ -13,6 +12,8 @@
 #include <png.h>
 #include <turbojpeg.h>
 #include <webp/decode.h>
+
+#include "core/sixteen_bits.h"
 
 namespace vkcppm {
 
@@ -55,16 +56,25 @@ public:
         return {png_get_image_width(state_.png, state_.info), png_get_image_height(state_.png, state_.info)};
     }
 
-    std::vector<std::uint8_t> rgba() {
+    bool has_16_bits() const { return png_get_bit_depth(state_.png, state_.info) == 16; }
+
+    Picture picture() {
+        const bool is_fine = has_16_bits();
+        std::vector<std::uint8_t> bytes = texels(is_fine ? 8 : 4);
+        return is_fine ? split(bytes) : Picture{std::move(bytes), {}, {}};
+    }
+
+private:
+    /// As in the file, 4 numbers a texel of so many bytes.
+    std::vector<std::uint8_t> texels(std::size_t texel_bytes) {
         guarded([](PngReader& reader) {
             png_set_expand(reader.state_.png);
-            png_set_scale_16(reader.state_.png);
             png_set_gray_to_rgb(reader.state_.png);
-            png_set_add_alpha(reader.state_.png, 0xff, PNG_FILLER_AFTER);
+            png_set_add_alpha(reader.state_.png, reader.has_16_bits() ? 0xffff : 0xff, PNG_FILLER_AFTER);
             png_set_interlace_handling(reader.state_.png);
             png_read_update_info(reader.state_.png, reader.state_.info);
         });
-        const std::size_t stride = 4 * std::size_t(size().width);
+        const std::size_t stride = texel_bytes * size().width;
         std::vector<std::uint8_t> texels(stride * size().height);
         rows_.resize(size().height);
         for (std::size_t y = 0; y < rows_.size(); ++y) rows_[y] = texels.data() + y * stride;
@@ -72,7 +82,21 @@ public:
         return texels;
     }
 
-private:
+    /// Of numbers of two bytes, the higher one first.
+    static Picture split(const std::vector<std::uint8_t>& numbers) {
+        Picture picture{
+            std::vector<std::uint8_t>(numbers.size() / 2), std::vector<std::int8_t>(numbers.size() / 2), {}};
+        bool is_exact = true;
+        for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
+            const auto [byte, rest] = split_16_bits(256u * numbers[2 * i] + numbers[2 * i + 1]);
+            picture.rgba[i] = byte;
+            picture.rest[i] = rest;
+            is_exact = is_exact && rest == 0;
+        }
+        if (is_exact) picture.rest = {};
+        return picture;
+    }
+
     void guarded(void (*step)(PngReader&)) {
         if (!completes(step)) throw std::runtime_error(fmt::format("broken PNG: {}", message_.data()));
     }
@@ -121,18 +145,18 @@ public:
 
     Extent size() const { return {std::uint32_t(width_), std::uint32_t(height_)}; }
 
-    std::vector<std::uint8_t> rgba(std::string& flaw) {
-        std::vector<std::uint8_t> texels(4 * size().pixels());
+    Picture picture() {
+        Picture picture{std::vector<std::uint8_t>(4 * size().pixels()), {}, {}};
         // A small file may hold endless passes over the picture: the flag ends them at 500.
-        const int result = tjDecompress2(decoder_.get(), bytes_.data(), bytes_.size(), texels.data(), width_,
+        const int result = tjDecompress2(decoder_.get(), bytes_.data(), bytes_.size(), picture.rgba.data(), width_,
                                          4 * width_, height_, TJPF_RGBA, TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS);
         // Of all warnings that of bytes too many alone is not about data that is missing or wrong.
         if (result != 0 && message().find("extraneous bytes before marker") != std::string::npos) {
-            flaw = message();
+            picture.flaw = message();
         } else {
             check(result);
         }
-        return texels;
+        return picture;
     }
 
 private:
@@ -212,10 +236,12 @@ Extent picture_size(Encoded bytes) {
     refuse_format();
 }
 
-std::vector<std::uint8_t> decode_picture(Encoded bytes, std::string& flaw) {
-    if (is_png(bytes)) return PngReader(bytes).rgba();
-    if (is_jpeg(bytes)) return JpegReader(bytes).rgba(flaw);
-    if (is_webp(bytes)) return WebpReader(bytes).rgba();
+bool has_16_bits(Encoded bytes) { return is_png(bytes) && PngReader(bytes).has_16_bits(); }
+
+Picture decode_picture(Encoded bytes) {
+    if (is_png(bytes)) return PngReader(bytes).picture();
+    if (is_jpeg(bytes)) return JpegReader(bytes).picture();
+    if (is_webp(bytes)) return {WebpReader(bytes).rgba(), {}, {}};
     refuse_format();
 }
 

@@ -47,6 +47,7 @@ struct Field {
     double minimum = -infinity;                   // integer, integer_map
     double maximum = infinity;                    // integer, integer_map
     unsigned multiple = 1;                        // integer: a multiple of this
+    bool or_zero = false;                         // integer: also 0, which some exporters write for none
     std::span<const std::string_view> choices{};  // string
     std::span<const int> values{};                // integer: any where empty
 };
@@ -144,7 +145,7 @@ constexpr Field buffer_view_fields[] = {
     index("buffer", "/buffers", true),
     integer("byteOffset", 0, byte_limit),
     integer("byteLength", 1, byte_limit, true),
-    {.name = "byteStride", .kind = Kind::integer, .minimum = 4, .maximum = 252, .multiple = 4},
+    {.name = "byteStride", .kind = Kind::integer, .minimum = 4, .maximum = 252, .multiple = 4, .or_zero = true},
     object("extensions", buffer_view_extension_fields),
 };
 
@@ -435,6 +436,7 @@ private:
     void check_integer(json& value, const std::string& path, const Field& field) const {
         if (!is_integer(value)) fail(path, value, "it must be an integer");
         const double number = value.get<double>();
+        if (number == 0.0 && field.or_zero) return;
         if (number < field.minimum || number > field.maximum) {
             fail(path, value, fmt::format("it must lie in {:.0f} to {:.0f}", field.minimum, field.maximum));
         }

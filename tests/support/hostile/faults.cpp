@@ -296,11 +296,6 @@ const std::vector<Fault>& faults() {
              add_light(b, {{"type", "spot"}});
          },
          {"lights[0].spot is missing"}},
-        {"LightNegative",
-         [](auto& b) {
-             add_light(b, {{"type", "point"}, {"intensity", -2}});
-         },
-         {"lights[0].intensity is -2", "negative"}},
         {"LightColor",
          [](auto& b) {
              add_light(b, {{"type", "point"}, {"color", {1, -1, 1}}});

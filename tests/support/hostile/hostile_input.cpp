@@ -76,8 +76,10 @@ std::string read_texture(const std::string& bytes) {
         const Extent size = picture_size(data);
         if (size.pixels() == 0) return "a texture without texels";
         if (size.width > 16384 || size.height > 16384 || size.pixels() > (1u << 22)) return "";
-        std::string flaw;
-        return decode_picture(data, flaw).size() == 4 * size.pixels() ? "" : "a texture of another size than it has";
+        const Picture picture = decode_picture(data);
+        const bool is_whole = picture.rgba.size() == 4 * size.pixels() &&
+                              (picture.rest.empty() || picture.rest.size() == picture.rgba.size());
+        return is_whole ? "" : "a texture of another size than it has";
     } catch (const std::runtime_error& error) {
         return std::string_view(error.what()).empty() ? "no reason" : "";
     }

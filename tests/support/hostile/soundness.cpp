@@ -124,7 +124,8 @@ std::string unsoundness(const Scene& scene) {
         if (!text.empty()) return fmt::format("{} of material {}", text, i);
     }
     for (const TextureImage& image : scene.images) {
-        if (image.rgba.size() != 4 * image.size.pixels() || image.rgba.empty()) {
+        if (image.rgba.size() != 4 * image.size.pixels() || image.rgba.empty() ||
+            (!image.rest.empty() && image.rest.size() != image.rgba.size())) {
             return fmt::format("image '{}'", image.name);
         }
     }
