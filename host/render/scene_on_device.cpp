@@ -79,12 +79,10 @@ void SceneOnDevice::lend(Buffers& buffers) const {
 
 Specialization scene_specialization(const FlatScene& scene, std::uint32_t features) {
     const bool is_fine = std::ranges::any_of(scene.textures, [](const gpu::TextureLookup& t) { return t.fine != 0; });
-    return {{SPEC_WORKGROUP, workgroup},
-            {SPEC_STACK, scene.bvh.stack},
-            {SPEC_PLANES, is_fine ? 2u : 1u},
-            {SPEC_NODE_BITS, std::uint32_t(std::bit_width(scene.bvh.nodes.size() - 1))},
-            {SPEC_FEATURES, features},
-            {SPEC_LIGHT_TREE, scene.light_tree.empty() ? 0u : 1u}};
+    return {
+        {SPEC_WORKGROUP, workgroup},      {SPEC_STACK, scene.bvh.stack},
+        {SPEC_PLANES, is_fine ? 2u : 1u}, {SPEC_NODE_BITS, std::uint32_t(std::bit_width(scene.bvh.nodes.size() - 1))},
+        {SPEC_FEATURES, features},        {SPEC_LIGHT_TREE, scene.light_tree.empty() ? 0u : 1u}};
 }
 
 bool splits_near_lamps(const FlatScene& scene) {
