@@ -57,7 +57,7 @@ struct DeviceFacts {
 /// Most buffers that any kernel has of a kind (shaders/shared/buffers.h).
 struct KernelNeeds {
     std::uint32_t uniform = 1, storage = 10, texels = 19;
-    std::uint32_t as_storage = 25;  // storage, where texels are storage as well
+    std::uint32_t as_storage = 27;  // storage, where texels are storage as well
 };
 inline constexpr KernelNeeds kernel_needs;
 

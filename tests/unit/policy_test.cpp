@@ -94,7 +94,7 @@ TEST(Policy, WhatIsLackingIsSaid) {
         {"ballots", [](auto& f) { f.ballots = false; }},
         {"compute queue", [](auto& f) { f.computes = false; }},
         {"8 storage buffers a stage, 10 are needed", [](auto& f) { f.storage_buffers = 8; }},
-        {"24 storage buffers a stage, 25 are needed, as 65536 texels in each of 16 buffers are too few",
+        {"24 storage buffers a stage, 27 are needed, as 65536 texels in each of 16 buffers are too few",
          [](auto& f) {
              f.storage_buffers = 24;
              f.texel_buffers = 16;
