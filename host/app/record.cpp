@@ -1,7 +1,6 @@
 #include "app/record.h"
 
 #include <algorithm>
-#include <cassert>
 #include <iterator>
 #include <utility>
 
@@ -130,6 +129,8 @@ std::string estimate_line(const ErrorEstimate& estimate) {
         estimate.relmse.error.value, 100.0 * estimate.noise.value);
 }
 
+Json stop_at_json(const StopAt& stop_at) { return {{"metric", stop_at.metric->name}, {"value", stop_at.value}}; }
+
 Json report_json(const Report& report) {
     Json json;
     json["device"] = report.device;
@@ -177,9 +178,8 @@ std::string stats_json(const RenderOptions& options, const Scene& scene, const R
     if (options.reference) {
         json["reference"] = options.reference->string();
         if (options.stop_at) {
-            json["stop_at"] = {{"metric", options.stop_at->metric->name},
-                               {"value", options.stop_at->value},
-                               {"reached", reached(*options.stop_at, rendering.curve)}};
+            json["stop_at"] = stop_at_json(*options.stop_at);
+            json["stop_at"]["reached"] = reached(*options.stop_at, rendering.curve);
         }
         json["curve"] = curve_json(rendering.curve);
     }

@@ -57,7 +57,8 @@ ExrAttributes exr_attributes(const SceneOptions& options, const Scene& scene, co
 std::string stats_json(const RenderOptions& options, const Scene& scene, const Rendering& rendering,
                        const Display& display);
 
-/// True where the last point of the curve is at or below the error to stop at. Asserts that the render was measured.
+/// As --stats and the record of a race have it.
+nlohmann::ordered_json stop_at_json(const StopAt& stop_at);
 
 /// The passes and totals as a table to read.
 std::string stats_table(const Report& report);

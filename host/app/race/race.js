@@ -54,15 +54,15 @@ function choose(change) {
   writeChoice();
 }
 
-const chosenMetric = () => race.metrics.find((metric) => metric.name === state.metric);
+const metricNamed = (name) => race.metrics.find((metric) => metric.name === name);
+const chosenMetric = () => metricNamed(state.metric);
 const shown = () => entrants.filter((entrant) => !state.hidden.has(entrant.name));
 
 // ---- Head
 
 // The error at which an entrant ends, in words.
 function aim() {
-  const metric = race.metrics.find(({name}) => name === race.stop_at.metric);
-  return `${metric.title} ${number(race.stop_at.value)}`;
+  return `${metricNamed(race.stop_at.metric).title} ${number(race.stop_at.value)}`;
 }
 
 // Who comes first to the error at which entrants end: by the mean over seeds, of those who come to it with every seed.

@@ -120,8 +120,7 @@ Json race_json(const RaceOptions& options, const RaceInput& input, const RaceRes
     const Settings& settings = first.entrant.settings;
     json["seconds"] = settings.seconds ? Json(*settings.seconds) : Json();
     json["iterations"] = settings.iterations == unbounded_iterations ? Json() : Json(settings.iterations);
-    if (const auto& stop_at = options.race.stop_at)
-        json["stop_at"] = {{"metric", stop_at->metric->name}, {"value", stop_at->value}};
+    if (options.race.stop_at) json["stop_at"] = stop_at_json(*options.race.stop_at);
     json["seeds"] = result.seeds;
     json["interrupted"] = result.interrupted;
     json["baseline"] = baseline.entrant.name;
