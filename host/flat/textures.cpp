@@ -52,8 +52,14 @@ std::pair<std::vector<std::uint8_t>, std::vector<std::int8_t>> linear_planes(con
 
 }  // namespace
 
+std::size_t texels_of(const TextureImage& image) { return image.size.pixels() * (image.rest.empty() ? 1 : 2); }
+
 TextureTable::TextureTable(const Scene& scene)
-    : scene_(scene), data_(scene.images.size()), colors_(scene.images.size()) {}
+    : scene_(scene), data_(scene.images.size()), colors_(scene.images.size()) {
+    std::size_t texels = 0;
+    for (const TextureImage& image : scene.images) texels += texels_of(image);
+    texels_.reserve(texels);
+}
 
 std::uint32_t TextureTable::append(const void* plane, std::size_t bytes) {
     const auto first = std::uint32_t(texels_.size());

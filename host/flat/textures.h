@@ -12,6 +12,9 @@
 
 namespace vkcppm {
 
+/// Words that the kernels read of an image: one a texel for each of its planes.
+std::size_t texels_of(const TextureImage& image);
+
 class TextureTable {
 public:
     explicit TextureTable(const Scene& scene);

@@ -11,6 +11,7 @@
 #include "core/process.h"
 #include "flat/features.h"
 #include "flat/surface.h"
+#include "flat/textures.h"
 #include "render/estimators.h"
 #include "render/kernel_choice.h"
 
@@ -42,11 +43,11 @@ std::uint32_t features_before(const Scene& scene, const Settings& settings) {
     return features;
 }
 
-/// What the scene takes at least: triangles that lie on one another are one, nodes of its BVH come on top.
-std::uint64_t least_bytes(const Scene& scene) {
-    std::uint64_t bytes = 0;
-    for (const TextureImage& image : scene.images) bytes += image.size.pixels() * (image.rest.empty() ? 4 : 8);
-    return bytes;
+/// Of what the scene takes all that is known before it is flat.
+std::uint64_t bytes_of_images(const Scene& scene) {
+    std::uint64_t texels = 0;
+    for (const TextureImage& image : scene.images) texels += texels_of(image);
+    return texels * sizeof(std::uint32_t);
 }
 
 std::string megabytes(std::uint64_t bytes) { return fmt::format("{:.0f} MB", std::ceil(double(bytes) * 1e-6)); }
@@ -113,7 +114,14 @@ std::vector<MemoryReport> memory_needed(const FlatScene& scene, const Settings& 
 
 void check_memory(const Scene& scene, const Settings& settings, const Device& device) {
     const Counts counts = counts_before(settings, device, features_before(scene, settings), true);
-    check_memory(counts, settings, device, least_bytes(scene));
+    const std::uint64_t of_images = bytes_of_images(scene);
+    const std::uint64_t most = device.largest_buffer(bound_buffer(Binding::images).access);
+    if (of_images > most) {
+        throw Error(ExitCode::out_of_device_memory,
+                    fmt::format("the scene's images need a buffer of {}, the device '{}' allows {}: smaller images would do",
+                                megabytes(of_images), device.info().name, megabytes(most)));
+    }
+    check_memory(counts, settings, device, of_images);
 }
 
 void check_memory(const Counts& counts, const Settings& settings, const Device& device, std::uint64_t of_scene) {

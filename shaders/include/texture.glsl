@@ -28,8 +28,8 @@ int wrap_index(int i, int size, uint mode) {
 vec4 texel_at(TextureLookup lookup, uint plane, int x, int y) {
     x = wrap_index(x, int(lookup.width), lookup.flags & TEXTURE_WRAP_S);
     y = wrap_index(y, int(lookup.height), (lookup.flags & TEXTURE_WRAP_T) >> 2u);
-    uint first = plane == 0u ? lookup.first : lookup.fine;
-    uint word = texelFetch(images_texels, int(first) + y * int(lookup.width) + x).x;
+    uint at = (plane == 0u ? lookup.first : lookup.fine) + uint(y) * lookup.width + uint(x);
+    uint word = texelFetch(images_texels, int(at >> 2u))[at & 3u];
     vec4 c = plane == 0u ? unpackUnorm4x8(word) : unpackSnorm4x8(word) * FINE_SCALE;
     if ((lookup.flags & TEXTURE_SRGB) != 0u) c.rgb = srgb_to_linear(c.rgb);
     return c;

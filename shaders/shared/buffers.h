@@ -41,7 +41,7 @@
 #define TANGENTS(ROW)          ROW(8, tangents, uvec4, triangle, uploaded, uint_texels, scratch, never)
 #define MATERIALS(ROW)         ROW(9, materials, SurfaceMaterial, material, uploaded, uint_texels, scratch, never)
 #define TEXTURES(ROW)          ROW(10, textures, TextureLookup, rest, uploaded, uint_texels, scratch, never)
-#define IMAGES(ROW)            ROW(11, images, uint, texel, uploaded, word_texels, scratch, never)
+#define IMAGES(ROW)            ROW(11, images, uint, texel, uploaded, uint_texels, scratch, never)
 #define LIGHTS(ROW)            ROW(12, lights, Light, light, uploaded, uint_texels, scratch, never)
 #define ENVIRONMENT(ROW)       ROW(13, environment, vec4, sky_pixel, uploaded, float_texels, scratch, never)
 #define ENVIRONMENT_ALIAS(ROW) ROW(14, environment_alias, uvec2, sky_pixel, uploaded, word_texels, scratch, never)

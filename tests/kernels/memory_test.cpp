@@ -74,5 +74,17 @@ TEST_F(Memory, ThatIsNotThereIsRefusedWithASizeThatFits) {
     EXPECT_FALSE(thrown_by([&] { check_memory(scene, resolve_settings(settings, scene), plain_device()); })) << text;
 }
 
+TEST_F(Memory, ThatImagesDoNotFitIsToldFromTheirSizes) {
+    Scene scene = room();
+    const std::uint64_t most = device().largest_buffer(bound_buffer(Binding::images).access);
+    const TextureImage large{"large", {16384, 16384}, {}};  // without a texel
+    if (most / 4 / large.size.pixels() > 64) GTEST_SKIP() << "the device takes buffers of " << most << " bytes";
+    while (scene.images.size() * 4 * large.size.pixels() <= most) scene.images.push_back(large);
+    const auto error = thrown_by([&] { check_memory(scene, resolve_settings({}, scene), device()); });
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->code(), ExitCode::out_of_device_memory);
+    EXPECT_NE(std::string(error->what()).find("images need a buffer of"), std::string::npos) << error->what();
+}
+
 }  // namespace
 }  // namespace vkcppm::test

@@ -574,14 +574,14 @@ TEST(HostileImage, IsRefusedWhereItIsTooLarge) {
                      {"the size of images[0] is 16385 x 1", "16384 texels a side"});
     expect_bad_scene(with_image({{"uri", test::data_uri(black_png({1, 16385}), "image/png")}}).gltf(),
                      {"the size of images[0] is 1 x 16385", "16384 texels a side"});
-    // 2^26 + 16384 texels from some 10 kB.
-    expect_bad_scene(with_image({{"uri", test::data_uri(black_png({16384, 4097}), "image/png")}}).gltf(),
-                     {"number of texels, with those of images[0] is 67125248", "67108864"});
+    // 2^27 + 16384 texels from some 20 kB.
+    expect_bad_scene(with_image({{"uri", test::data_uri(black_png({16384, 8193}), "image/png")}}).gltf(),
+                     {"number of texels, with those of images[0] is 134234112", "134217728"});
     // Two that are within the limit apart and beyond it together: the second is not decoded.
     GltfBuilder builder = with_image({{"uri", test::data_uri(black_png({1024, 1}), "image/png")}});
-    builder.texture(black_png({16384, 4096}));
+    builder.texture(black_png({16384, 8192}));
     builder.document["materials"][0]["normalTexture"]["index"] = 1;
-    expect_bad_scene(builder.gltf(), {"with those of images[1] is 67109888", "67108864"});
+    expect_bad_scene(builder.gltf(), {"with those of images[1] is 134218752", "134217728"});
 }
 
 TEST(HostileTexture, IsRefusedByALineThatNamesIt) {

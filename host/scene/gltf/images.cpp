@@ -23,6 +23,9 @@ GltfImages::GltfImages(const GltfFile& file, GltfViews& views, Warnings& warning
 
 namespace {
 
+// That each texel takes at least: as it was decoded, and where kernels read it.
+constexpr std::size_t bytes_a_texel = 8;
+
 /// Puts the roughness of texels whose alpha is glossiness where a metallic-roughness texture has it.
 void make_roughness(std::vector<std::uint8_t>& rgba, double factor) {
     for (std::size_t i = 0; i < rgba.size(); i += 4) {
@@ -103,6 +106,7 @@ std::optional<std::uint32_t> GltfImages::add(Source source) {
 }
 
 std::vector<TextureImage> GltfImages::take_images() {
+    check_room(texels_, bytes_a_texel, "texels", file_.name);
     std::vector<std::string> broken(images_.size()), flaws(images_.size());  // why; empty: it is not
     tbb::parallel_for(std::size_t(0), images_.size(), [&](std::size_t i) {
         try {

@@ -29,7 +29,7 @@ public:
     std::optional<std::uint32_t> index(std::size_t image, std::optional<double> glossiness = {});
 
     /// Decodes all, each once, on all cores, and hands them over in the order of index(). Throws Error(bad_scene) where
-    /// one is broken: the first.
+    /// one is broken: the first; where memory is too little for them.
     std::vector<TextureImage> take_images();
 
     /// FNV-1a of the file's hash and of each external image's bytes.

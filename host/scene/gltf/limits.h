@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <string_view>
 
+#include "core/process.h"
 #include "scene/bad_scene.h"
 #include "scene/gltf/file.h"
 
@@ -34,9 +35,9 @@ constexpr double max_uv = 1 << 24;  // of texture coordinates and their transfor
 
 constexpr std::size_t max_flat_texels = std::size_t(1) << 24;  // more of a WebP, whose flat parts take no bytes at all
 
-/// Texels of all images together: 2^26, and of larger files 64 for each of their bytes, up to 2^29.
+/// Texels of all images together: 2^27, and of larger files 256 for each of their bytes, as many as can be numbered.
 constexpr std::size_t max_texels(std::size_t bytes) {
-    return std::clamp(64 * bytes, std::size_t(1) << 26, std::size_t(1) << 29);
+    return std::clamp(256 * bytes, std::size_t(1) << 27, (std::size_t(1) << 32) - 1);
 }
 
 /// Throws Error(bad_scene) where `total` is above `limit`, e.g. "the number of triangles is 9; the limit is 8".
@@ -51,6 +52,15 @@ inline void check_total(std::size_t total, const Expansion& limit, std::string_v
     if (total <= limit.of(file.bytes)) return;
     bad_scene(file.name, fmt::format("the number of {}", what), fmt::to_string(total),
               fmt::format("the limit is {} for its {} bytes", limit.of(file.bytes), file.bytes));
+}
+
+/// Throws Error(bad_scene) where `total` things of so many bytes each are more than memory has left.
+inline void check_room(std::size_t total, std::size_t bytes_each, std::string_view what, std::string_view file) {
+    const std::size_t needed = total * bytes_each, there = available_memory();
+    if (needed <= there) return;
+    bad_scene(file, fmt::format("the number of {}", what), fmt::to_string(total),
+              fmt::format("they need {} MB of memory, there are {} MB, enough for {}", needed / 1000000,
+                          there / 1000000, there / bytes_each));
 }
 
 }  // namespace vkcppm

@@ -9,7 +9,6 @@
 #include <glm/geometric.hpp>
 #include <tiny_gltf.h>
 
-#include "core/process.h"
 #include "scene/bad_scene.h"
 #include "scene/gltf/limits.h"
 #include "scene/gltf/materials.h"
@@ -156,11 +155,7 @@ private:
             check_total(all_primitives += copies * model_.meshes[key.mesh].primitives.size(), max_primitives,
                         "primitives", file_);
         }
-        const std::size_t needed = all_triangles * bytes_a_triangle, there = available_memory();
-        if (needed <= there) return;
-        bad_scene(file_.name, "the number of triangles", fmt::to_string(all_triangles),
-                  fmt::format("they need {} MB of memory, there are {} MB, enough for {}", needed / 1000000,
-                              there / 1000000, there / bytes_a_triangle));
+        check_room(all_triangles, bytes_a_triangle, "triangles", file_.name);
     }
 
     void add_node(const PlacedNode& node) {
