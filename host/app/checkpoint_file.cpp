@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "app/record.h"
+#include "app/provenance.h"
 #include "app/version.h"
 #include "core/error.h"
 #include "core/fnv1a.h"

@@ -4,7 +4,7 @@
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/measures.h"
-#include "app/record.h"
+#include "app/provenance.h"
 #include "core/error.h"
 #include "io/exr.h"
 #include "study/measures.h"

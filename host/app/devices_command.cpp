@@ -5,7 +5,7 @@
 
 #include "app/commands.h"
 #include "app/console.h"
-#include "app/record.h"
+#include "app/provenance.h"
 #include "vk/device.h"
 
 namespace vkcppm {

@@ -6,7 +6,7 @@
 
 #include "app/commands.h"
 #include "app/console.h"
-#include "app/record.h"
+#include "app/provenance.h"
 #include "app/version.h"
 #include "core/error.h"
 #include "core/process.h"

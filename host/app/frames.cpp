@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "app/record.h"
+#include "app/provenance.h"
 #include "core/error.h"
 #include "io/exr.h"
 

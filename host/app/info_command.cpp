@@ -14,11 +14,11 @@
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/load.h"
-#include "app/record.h"
+#include "app/provenance.h"
 #include "core/fnv1a.h"
 #include "flat/features.h"
 #include "flat/flatten.h"
-#include "flat/surface.h"
+#include "flat/material.h"
 #include "render/memory.h"
 #include "scene/instances.h"
 
@@ -169,7 +169,7 @@ Json json_of(const Scene& scene, const std::vector<Feature>& features) {
         box.is_empty() ? Json() : Json{{"min", json_of_vector(box.low)}, {"max", json_of_vector(box.high)}};
     json["materials"] = Json::array();
     const std::vector<std::size_t> triangles = triangles_by_material(scene);
-    const std::vector<SurfaceTraits> traits = traits_of(scene);
+    const std::vector<MaterialTraits> traits = traits_of(scene);
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& material = scene.materials[i];
         json["materials"].push_back({{"name", material.name},
@@ -215,7 +215,7 @@ std::string plain_text(const Scene& scene, const std::vector<Feature>& features)
     fmt::format_to(out, "vertices with {}\n", fmt::join(vertex_attributes(scene), ", "));
     fmt::format_to(out, "{} materials\n", scene.materials.size());
     const std::vector<std::size_t> triangles = triangles_by_material(scene);
-    const std::vector<SurfaceTraits> traits = traits_of(scene);
+    const std::vector<MaterialTraits> traits = traits_of(scene);
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& material = scene.materials[i];
         fmt::format_to(out, "  {} '{}', {} triangles: {}\n", i, material.name, triangles[i],

@@ -13,7 +13,7 @@
 #include <glm/common.hpp>
 #include <nlohmann/json.hpp>
 
-#include "app/record.h"
+#include "app/provenance.h"
 #include "app/version.h"
 #include "core/fnv1a.h"
 #include "io/atomic_file.h"

@@ -11,7 +11,7 @@
 #include "app/display.h"
 #include "app/job.h"
 #include "app/outputs.h"
-#include "app/record.h"
+#include "app/provenance.h"
 #include "core/error.h"
 #include "io/exr.h"
 #include "io/png.h"
@@ -36,7 +36,7 @@ Rendering rendering_of(const Job& job, IterationSums sums, Report report) {
     return rendering;
 }
 
-/// Of the scene, what records tell of it.
+/// Of the scene, what pictures and statistics tell of it.
 Scene scene_of(const Job& job) {
     Scene scene;
     scene.file = job.plan.scene.file;

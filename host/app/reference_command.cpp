@@ -12,7 +12,7 @@
 #include "app/outputs.h"
 #include "app/pipeline_cache.h"
 #include "app/progress.h"
-#include "app/reference_record.h"
+#include "app/reference_provenance.h"
 #include "app/validation.h"
 #include "io/atomic_file.h"
 #include "io/exr.h"

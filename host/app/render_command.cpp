@@ -21,7 +21,7 @@
 #include "app/outputs.h"
 #include "app/pipeline_cache.h"
 #include "app/progress.h"
-#include "app/record.h"
+#include "app/provenance.h"
 #include "app/reference.h"
 #include "app/validation.h"
 #include "core/ending.h"

@@ -14,7 +14,7 @@
 #include "app/console.h"
 #include "app/job.h"
 #include "app/progress.h"
-#include "app/record.h"
+#include "app/provenance.h"
 #include "core/error.h"
 
 namespace vkcppm {

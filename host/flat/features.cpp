@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "flat/surface.h"
+#include "flat/material.h"
 
 namespace vkcppm {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 /// What a scene's features are told from.
 struct Asked {
     const Scene& scene;
-    const std::vector<SurfaceTraits>& traits;
+    const std::vector<MaterialTraits>& traits;
     const FlatScene& flat;
     std::vector<bool> used;         // [materials] on a triangle
     std::vector<Feature> features;  // found so far
@@ -27,7 +27,7 @@ std::string named(const char* kind, const std::string& first, std::size_t count)
 }
 
 /// The reason of a feature that materials ask for: those on a triangle that have the trait. Empty: none.
-std::string reason_of(const Asked& asked, const std::function<bool(const SurfaceTraits&)>& has) {
+std::string reason_of(const Asked& asked, const std::function<bool(const MaterialTraits&)>& has) {
     std::size_t first = 0, count = 0;
     for (std::size_t i = 0; i < asked.traits.size(); ++i) {
         if (asked.used[i] && has(asked.traits[i]) && count++ == 0) first = i;
@@ -49,7 +49,7 @@ template <std::uint32_t feature> std::string reason_of(const Asked& asked);
 template <> std::string reason_of<FEATURE_SMOOTH>(const Asked& asked) {
     std::size_t smooth = 0;
     for (const gpu::TriangleShading& shading : asked.flat.shading) {
-        const SurfaceTraits& t = asked.traits[shading.material & ~SHADING_FLAT];
+        const MaterialTraits& t = asked.traits[shading.material & ~SHADING_FLAT];
         if (t.gathers() && (t.normal_map || (shading.material & SHADING_FLAT) == 0)) ++smooth;
     }
     return smooth > 0 ? fmt::format("{} triangles that gather photons have some", smooth) : "";
@@ -57,7 +57,7 @@ template <> std::string reason_of<FEATURE_SMOOTH>(const Asked& asked) {
 
 template <> std::string reason_of<FEATURE_TANGENTS>(const Asked& asked) {
     if (asked.scene.tangents.empty()) return {};
-    const auto turns = [](const SurfaceTraits& t) { return t.normal_map || t.anisotropic; };
+    const auto turns = [](const MaterialTraits& t) { return t.normal_map || t.anisotropic; };
     return reason_of(asked, turns).empty() ? "" : "normal maps or anisotropy, and vertices that have some";
 }
 
@@ -110,7 +110,7 @@ Feature make_feature(std::uint32_t bit, std::string reason) {
     return {bit, named(bit), std::move(reason)};
 }
 
-std::vector<Feature> features_of(const Scene& scene, const std::vector<SurfaceTraits>& traits, const FlatScene& flat) {
+std::vector<Feature> features_of(const Scene& scene, const std::vector<MaterialTraits>& traits, const FlatScene& flat) {
     Asked asked{scene, traits, flat, std::vector<bool>(traits.size(), false), {}};
     for (const Triangle& triangle : scene.triangles) asked.used[triangle.material] = true;
     const auto add = [&](std::uint32_t bit, std::string reason) {
@@ -118,7 +118,7 @@ std::vector<Feature> features_of(const Scene& scene, const std::vector<SurfaceTr
     };
     // clang-format off
 #define MATERIAL(bit, NAME, words, trait) \
-    add(FEATURE_##NAME, reason_of(asked, [](const SurfaceTraits& t) { return t.trait; }));
+    add(FEATURE_##NAME, reason_of(asked, [](const MaterialTraits& t) { return t.trait; }));
 #define SCENE(bit, NAME, words) add(FEATURE_##NAME, reason_of<FEATURE_##NAME>(asked));
 #define SETTING(bit, NAME, words)
     FEATURE_TABLE(MATERIAL, SCENE, SETTING)

@@ -1,5 +1,5 @@
 #pragma once
-// A Scene as the kernels read it: leaf-ordered triangles, BVH, surfaces, an alias table of lights, all in the frame.
+// A Scene as the kernels read it: leaf-ordered triangles, BVH, materials, an alias table of lights, all in the frame.
 
 #include <cstdint>
 #include <string>

@@ -21,7 +21,7 @@
 #include "flat/direction.h"
 #include "flat/features.h"
 #include "flat/lights.h"
-#include "flat/surface.h"
+#include "flat/material.h"
 #include "flat/textures.h"
 #include "scene/diagnosis/shell.h"
 #include "scene/instances.h"
@@ -58,7 +58,7 @@ int first_corner(const Corners& c) {
 
 /// least_error: as of part_touching_faces().
 Placed place_triangles(const Scene& scene, const TriangleRange& range, const SceneFrame& frame,
-                       const std::vector<SurfaceTraits>& traits, float least_error = 0.0f) {
+                       const std::vector<MaterialTraits>& traits, float least_error = 0.0f) {
     Placed placed;
     std::vector<Corners>& corners = placed.corners;
     corners.resize(range.count());
@@ -66,7 +66,7 @@ Placed place_triangles(const Scene& scene, const TriangleRange& range, const Sce
     tbb::parallel_for(std::size_t(0), corners.size(), [&](std::size_t i) {
         const Triangle& triangle = scene.triangles[range.first + i];
         for (int c = 0; c < 3; ++c) corners[i][c] = glm::vec3(frame.point(scene.positions[triangle.vertex[c]]));
-        const SurfaceTraits& t = traits[triangle.material];
+        const MaterialTraits& t = traits[triangle.material];
         faces[i] = {triangle.material, t.emits, is_solid(t)};
     });
     placed.source = distinct_triangles(corners, faces);
@@ -264,7 +264,7 @@ std::vector<BvhBox> boxes_in_frame(const std::vector<SceneBox>& boxes, const std
 }
 
 /// Everything that has a place: triangles, instances and the trees over them. Returns whether solids touch.
-bool add_geometry(const Scene& scene, const std::vector<SurfaceTraits>& traits, FlatScene& flat) {
+bool add_geometry(const Scene& scene, const std::vector<MaterialTraits>& traits, FlatScene& flat) {
     const TriangleRange world = world_triangles(scene);
     const std::vector<SceneBox> boxes = instance_boxes(scene);
     SceneBox whole = box_of(scene, world);
@@ -344,8 +344,8 @@ bool add_geometry(const Scene& scene, const std::vector<SurfaceTraits>& traits, 
 
 /// Whether a camera stands within closed surfaces that face away from it, as in a box of which it is to see the inside:
 /// it would see nothing of it if it did not see backs. O(triangles); instances are left out.
-bool is_enclosed(const Scene& scene, const std::vector<SurfaceTraits>& traits) {
-    if (std::ranges::none_of(traits, &SurfaceTraits::culled)) return false;
+bool is_enclosed(const Scene& scene, const std::vector<MaterialTraits>& traits) {
+    if (std::ranges::none_of(traits, &MaterialTraits::culled)) return false;
     return std::ranges::any_of(scene.cameras, [&](const Camera& camera) {
         const glm::dvec3 eye(camera.to_world[3]);
         const double turns = tbb::parallel_deterministic_reduce(
@@ -363,7 +363,7 @@ bool is_enclosed(const Scene& scene, const std::vector<SurfaceTraits>& traits) {
 }
 
 /// Whether solids are nested and, where they are, which of them counts, and what is needed to tell in which the eye is.
-void add_solids(const Scene& scene, const std::vector<SurfaceTraits>& traits, bool touch, FlatScene& flat) {
+void add_solids(const Scene& scene, const std::vector<MaterialTraits>& traits, bool touch, FlatScene& flat) {
     const std::vector<Shell> shells = solid_shells(scene, traits);
     flat.nested = touch ? "solids that touch" : nested_solids(scene, shells);
     if (flat.nested.empty()) return;
@@ -438,13 +438,13 @@ FlatScene flatten(const Scene& scene) {
                                                      scene.materials.size(), PATH_NO_MEDIUM - 1));
     }
     TextureTable textures(scene);
-    std::vector<SurfaceTraits> traits = traits_of(scene);
+    std::vector<MaterialTraits> traits = traits_of(scene);
     if (is_enclosed(scene, traits)) {
-        for (SurfaceTraits& of_material : traits) of_material.culled = false;
+        for (MaterialTraits& of_material : traits) of_material.culled = false;
     }
     const bool touch = add_geometry(scene, traits, flat);
     for (std::size_t i = 0; i < traits.size(); ++i) {
-        flat.materials.push_back(surface_of(scene.materials[i], traits[i], flat.frame.scale, textures));
+        flat.materials.push_back(gpu_material(scene.materials[i], traits[i], flat.frame.scale, textures));
     }
     add_solids(scene, traits, touch, flat);
     flat.textures = textures.lookups();

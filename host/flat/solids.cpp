@@ -174,7 +174,7 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> nested_instances(const Sc
 
 }  // namespace
 
-std::vector<Shell> solid_shells(const Scene& scene, const std::vector<SurfaceTraits>& traits) {
+std::vector<Shell> solid_shells(const Scene& scene, const std::vector<MaterialTraits>& traits) {
     std::vector<std::vector<std::uint32_t>> triangles(scene.materials.size());
     for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
         const std::uint32_t material = scene.triangles[i].material;
@@ -215,7 +215,7 @@ std::string nested_solids(const Scene& scene, std::span<const Shell> shells) {
     return {};
 }
 
-std::vector<std::uint32_t> priorities_of(const Scene& scene, const std::vector<SurfaceTraits>& traits,
+std::vector<std::uint32_t> priorities_of(const Scene& scene, const std::vector<MaterialTraits>& traits,
                                          std::span<const Shell> shells) {
     std::vector<double> scales(scene.meshes.size()), shown(scene.meshes.size());
     for (const Instance& instance : scene.instances) {

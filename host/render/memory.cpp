@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/process.h"
 #include "flat/features.h"
-#include "flat/surface.h"
+#include "flat/material.h"
 #include "flat/textures.h"
 #include "render/estimators.h"
 #include "render/kernel_choice.h"
@@ -35,7 +35,7 @@ Counts counts_before(const Settings& settings, const Device& device, std::uint32
 /// Features that say how much a pixel takes, of what is known before the scene is flat.
 std::uint32_t features_before(const Scene& scene, const Settings& settings) {
     std::uint32_t features = bits_of(features_of(settings));
-    for (const SurfaceTraits& traits : traits_of(scene)) {
+    for (const MaterialTraits& traits : traits_of(scene)) {
         if (traits.glossy()) features |= FEATURE_GLOSS;
         if (traits.is_rough()) features |= FEATURE_ROUGH;
     }
@@ -117,9 +117,10 @@ void check_memory(const Scene& scene, const Settings& settings, const Device& de
     const std::uint64_t of_images = bytes_of_images(scene);
     const std::uint64_t most = device.largest_buffer(bound_buffer(Binding::images).access);
     if (of_images > most) {
-        throw Error(ExitCode::out_of_device_memory,
-                    fmt::format("the scene's images need a buffer of {}, the device '{}' allows {}: smaller images would do",
-                                megabytes(of_images), device.info().name, megabytes(most)));
+        throw Error(
+            ExitCode::out_of_device_memory,
+            fmt::format("the scene's images need a buffer of {}, the device '{}' allows {}: smaller images would do",
+                        megabytes(of_images), device.info().name, megabytes(most)));
     }
     check_memory(counts, settings, device, of_images);
 }

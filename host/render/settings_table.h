@@ -1,7 +1,7 @@
 // The settings of a render, one row each. Everything else follows from the rows: the members of Settings
 // (render/settings_members.h) and their ranges (render/settings.h), the options of the command line and their help
-// (app/options.cpp), what pictures, statistics and checkpoints say of a render (app/record.h, app/checkpoint_file.h),
-// the parameters of a race's entrants.
+// (app/options.cpp), what pictures, statistics and checkpoints say of a render (app/provenance.h,
+// app/checkpoint_file.h), the parameters of a race's entrants.
 //
 // Included where SETTING is defined:
 //   SETTING(member, type, default, name, kind, values, unit, help)
@@ -10,7 +10,7 @@
 //     values  that it takes: of render/settings_rows.h; what depends on several settings is in resolve_settings
 //     unit    of its value, from which follows how it is written: setting::Unit
 //     help    where {} is the default, {choices} the values of a list with what they are
-// The order is that of --help, of the records and of the checks.
+// The order is that of --help, of what is told of a render and of the checks.
 // clang-format off
 
 SETTING(estimator, std::string, "cppm", "estimator", method, an_estimator(), name,

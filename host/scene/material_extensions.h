@@ -1,6 +1,6 @@
 // The extensions of a glTF material: a row each, and in it a row a member. From them follow the members of Material
 // (scene/scene.h), what a file may hold (scene/gltf/schema.cpp), what is read of it (scene/gltf/materials.cpp) and the
-// textures of a surface (flat/surface.cpp). Whoever includes this defines of the following what it asks for:
+// textures of a surface (flat/material.cpp). Whoever includes this defines of the following what it asks for:
 //   EXTENSION(name, rows...)
 //   FACTOR(member, "json", standard, low, high)  a number, which is clamped with a warning
 //   COLOR(member, "json", standard, high)        three channels of 0 to high, likewise

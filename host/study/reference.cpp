@@ -12,7 +12,7 @@
 #include "core/process.h"
 #include "core/srgb.h"
 #include "flat/flatten.h"
-#include "flat/surface.h"
+#include "flat/material.h"
 #include "render/integrator.h"
 #include "render/path_tracer.h"
 #include "render/render.h"
@@ -298,7 +298,7 @@ Reference make_reference(const Scene& scene, const ReferenceSettings& wanted, De
     const SceneOnDevice on_device(device, flatten(scene));
     Paths paths(on_device, camera, result.settings);
     std::unique_ptr<Caustics> caustics;
-    if (splits_near_lamps(on_device.flat()) || std::ranges::any_of(traits_of(scene), &SurfaceTraits::smooth)) {
+    if (splits_near_lamps(on_device.flat()) || std::ranges::any_of(traits_of(scene), &MaterialTraits::smooth)) {
         caustics = std::make_unique<Caustics>(on_device, camera, result.settings);
     }
     std::vector<Half*> halves{&paths};

@@ -12,8 +12,8 @@
 namespace vkcppm {
 namespace {
 
-// Files hold colours in half floats at least, 11 bits, and errors in 3 bits (app/reference_record.cpp): half a unit of
-// the one is a standard error of its own, and the other makes an error as uncertain as so many more batches would.
+// Files hold colours in half floats at least, 11 bits, and errors in 3 bits (app/reference_provenance.cpp): half a unit
+// of the one is a standard error of its own, and the other makes an error as uncertain as so many more batches would.
 constexpr double colour_rounding = 0x1p-12;
 constexpr double error_freedom = 200.0;
 constexpr double most_freedom = 1e6;  // the normal distribution

@@ -46,8 +46,8 @@ float disc_radius2;
 float pilot2_now;
 vec3 hit_weight_now;
 
-#define HOOK_RECORD STATISTIC_derivative
-void record(uint pixel, Accepted photon, bool inside) {
+#define HOOK_KEEP STATISTIC_derivative
+void keep(uint pixel, Accepted photon, bool inside) {
     float y = luminance(hit_weight_now * photon.power) * (params.inverse_paths * params.flux_unit);
     if (inside) {
         sums.x += y * y * (float(params.photons) * kernel_weight(photon.q) / (PI * disc_radius2));

@@ -2,5 +2,5 @@
 // uniform density; it shrinks where they fail.
 #include "estimators/uniform.glsl"
 
-#define HOOK_RECORD STATISTIC_tally
-void record(uint pixel, Accepted photon, bool inside) { count(cell_bin(photon.v, photon.q)); }
+#define HOOK_KEEP STATISTIC_tally
+void keep(uint pixel, Accepted photon, bool inside) { count(cell_bin(photon.v, photon.q)); }

@@ -4,8 +4,8 @@
 #include "include/rng.glsl"
 #include "estimators/uniform.glsl"
 
-#define HOOK_RECORD STATISTIC_tally
-void record(uint pixel, Accepted photon, bool inside) {
+#define HOOK_KEEP STATISTIC_tally
+void keep(uint pixel, Accepted photon, bool inside) {
     bool flip = random4(params.seed, launch.iteration, STREAM_GATHER, picture_pixel(pixel), photon.index).x < 0.5;
     count(cell_bin(flip ? -photon.v : photon.v, photon.q));
 }

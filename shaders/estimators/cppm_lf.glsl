@@ -2,8 +2,8 @@
 #include "include/sampling.glsl"
 #include "estimators/tally.glsl"
 
-#define HOOK_RECORD STATISTIC_tally
-void record(uint pixel, Accepted photon, bool inside) { count(cell_bin(photon.v, photon.q)); }
+#define HOOK_KEEP STATISTIC_tally
+void keep(uint pixel, Accepted photon, bool inside) { count(cell_bin(photon.v, photon.q)); }
 
 // A_a = (2/3) (a^(3/2) - (a-1)^(3/2)) sin(pi/n_s) n_a^(-3/2) of ring a = ring + 1 of n_a = rings: the probability of a
 // cell changes with k1 by A_a cos(theta_s), with k2 by A_a sin(theta_s). Eq. (9).

@@ -11,10 +11,10 @@
 //   float kernel_weight(float q)
 //       pi R^2 times the kernel at q = |offset|^2 / R^2 in [0, 1): what a photon within R counts for in the sum.
 //       Default: 1, a disc.
-//   void record(uint pixel, Accepted photon, bool inside)
+//   void keep(uint pixel, Accepted photon, bool inside)
 //       After kernel_weight, for every accepted photon; inside: it is within R, else within search_radius2 only.
-//       Writes nothing but variables of the invocation. Its define says what it records, and the row must keep that:
-//       `#define HOOK_RECORD STATISTIC_tally`. Default: nothing, STATISTIC_none.
+//       Writes nothing but variables of the invocation. Its define says what it keeps, and the row must keep that:
+//       `#define HOOK_KEEP STATISTIC_tally`. Default: nothing, STATISTIC_none.
 //   void flush(uint pixel)
 //       After all photons of the round: stores what they have added, on top of what earlier rounds and iterations
 //       left. Default: nothing, of STATISTIC_none alone.
@@ -54,18 +54,18 @@ void begin(uint pixel) {}
 float kernel_weight(float q) { return 1.0; }
 #endif
 
-#ifndef HOOK_RECORD
-#define HOOK_RECORD STATISTIC_none
-void record(uint pixel, Accepted photon, bool inside) {}
+#ifndef HOOK_KEEP
+#define HOOK_KEEP STATISTIC_none
+void keep(uint pixel, Accepted photon, bool inside) {}
 #endif
 
-#if !(HOOK_RECORD)
-#error "the estimator records (HOOK_RECORD) another statistic than its row of shared/estimators.h keeps"
+#if !(HOOK_KEEP)
+#error "the estimator keeps (HOOK_KEEP) another statistic than its row of shared/estimators.h says"
 #endif
 
 #ifndef HOOK_FLUSH
 #ifndef STATISTIC_none
-#error "HOOK_FLUSH is missing: what is recorded is never stored"
+#error "HOOK_FLUSH is missing: what is kept is never stored"
 #endif
 void flush(uint pixel) {}
 #endif

@@ -20,8 +20,8 @@ QUANTILES(TEXELS)
 float contributed[DISC_CELLS];
 vec3 albedo;
 
-#define HOOK_RECORD STATISTIC_contribution
-void record(uint pixel, Accepted photon, bool inside) {
+#define HOOK_KEEP STATISTIC_contribution
+void keep(uint pixel, Accepted photon, bool inside) {
     uint bin = cell_bin(photon.v, photon.q);
     float x = luminance(albedo * photon.power) * params.flux_unit;
     for (uint cell = 0u; cell < DISC_CELLS; ++cell) contributed[cell] += cell == bin ? x : 0.0;

@@ -1,4 +1,4 @@
-// Estimators that count photons a cell of the disc and test the counts. One that includes this defines record(), which
+// Estimators that count photons a cell of the disc and test the counts. One that includes this defines keep(), which
 // calls count(), and test_ratio() of Algorithm 1, which looks at `observed` (uniform.glsl has one); begin, flush and
 // update it has from here. One with a rule of its own around algorithm1() defines its update before it includes this.
 #ifndef TALLY_GLSL

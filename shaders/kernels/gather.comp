@@ -124,7 +124,7 @@ void weigh(Receiver r, uint index, inout Gathered sum) {
         if (layer < LAYERS) layer_flux[layer] += counted;
     }
     sum.count += inside ? 1u : 0u;
-    record(r.pixel, Accepted(vec2(dot(offset, r.tangent), dot(offset, r.bitangent)), q, power, index), inside);
+    keep(r.pixel, Accepted(vec2(dot(offset, r.tangent), dot(offset, r.bitangent)), q, power, index), inside);
 }
 
 // Runs of at most 32 photons that wait to be weighed, those accepted marked in a word. The test of the distance takes

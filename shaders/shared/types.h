@@ -53,7 +53,7 @@ using uint = std::uint32_t;
 // Features of a scene or of its settings: a pipeline holds only what its scene needs, and buffers that only a feature
 // reads are empty without it. FEATURE_<NAME> is its bit, HAS_<NAME> (include/kernel.glsl) whether a kernel has it.
 //   MATERIAL(bit, NAME, words, trait)  a material on a triangle has the trait, an expression on the members of
-//                                      SurfaceTraits (host/flat/surface.h)
+//                                      MaterialTraits (host/flat/material.h)
 //   SCENE(bit, NAME, words)            host/flat/features.cpp asks the scene
 //   SETTING(bit, NAME, words)          the settings ask for it
 // words: its name for people. In the order of bits, all of which are in use: what params say at no cost, as that there
@@ -101,7 +101,7 @@ using uint = std::uint32_t;
 FEATURE_TABLE(FEATURE_BIT_OF_MATERIAL, FEATURE_BIT, FEATURE_BIT)
 
 // The lobes of a surface. Kernels go over them by include/bsdf.glsl, which says what a lobe is made of there, and the
-// host by flat/surface.h, which says where a material has them.
+// host by flat/material.h, which says where a material has them.
 //   ROW(number, NAME, name, present)  present: the constant of a kernel by which scenes without it do not have its code
 // Sums go over the rows in this order.
 #define LOBES(ROW)                                        \

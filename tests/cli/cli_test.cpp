@@ -928,7 +928,7 @@ TEST_F(CliReference, TheCurveHoldsTheErrorsOfThePicturesOnTheWay) {
     for (const Json& point : curve) expect_same_errors(point, errors_after(point.at("iterations")));
     expect_same_errors(curve.back(), compared("a.exr"));
     EXPECT_TRUE(test::read_bytes(folder_ / "short.exr") == test::read_bytes(folder_ / "a.exr"))
-        << "the picture, or its record, is another where it is measured";
+        << "the picture, or what it says of itself, is another where it is measured";
 
     // On the clock are the passes of iterations: all that the table of passes has but the snapshots themselves.
     double seconds = 0.0;

@@ -12,7 +12,7 @@
 
 #include "core/metrics.h"
 #include "flat/flatten.h"
-#include "flat/surface.h"
+#include "flat/material.h"
 #include "render/path_tracer.h"
 #include "render/render.h"
 #include "study/batch_mean.h"
@@ -83,7 +83,7 @@ TEST_P(PathTracerRooms, AgreeWithDoublePrecision) {
     expect_blocks_agree(trace_on_device(scene, settings), paths, exact, "device over double");
 
     // Textures may be smooth somewhere, but hardly are.
-    const auto smooth = [](const SurfaceTraits& t) { return t.smooth() && !t.textured; };
+    const auto smooth = [](const MaterialTraits& t) { return t.smooth() && !t.textured; };
     if (!std::ranges::any_of(traits_of(scene), smooth)) return;
     const Reference reference = refer(scene, settings, 64, 4096);
     expect_blocks_agree({reference.mean, reference.standard_error}, paths, {.side = 8, .level = 1e-4, .bias = 0.004},

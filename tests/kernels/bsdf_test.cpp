@@ -18,7 +18,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "flat/surface.h"
+#include "flat/material.h"
 #include "flat/textures.h"
 #include "kernels/probe.h"
 #include "oracle/bsdf.h"
@@ -229,10 +229,10 @@ protected:
                                      const std::vector<gpu::BsdfInput>& inputs, bool follow) {
         const Scene scene;
         TextureTable textures(scene);
-        const SurfaceTraits traits = traits_of(material, 1.0f);
+        const MaterialTraits traits = traits_of(material, 1.0f);
         const bool rare = traits.anisotropic || traits.iridescent || traits.has(Lobe::sheen);
         Probe& probe = rare ? rare_ : usual_;
-        probe.input(Binding::materials, std::vector{surface_of(material, traits, 1.0, textures)});
+        probe.input(Binding::materials, std::vector{gpu_material(material, traits, 1.0, textures)});
         probe.input(PROBE_VIEW, views);
         probe.input(PROBE_INPUT, inputs);
         probe.output<gpu::BsdfOutput>(PROBE_OUTPUT, inputs.size());
@@ -336,7 +336,7 @@ TEST_F(BsdfLobes, ValuesAreTheReferences) {
         const auto outputs = run(c.material, view_of(c, wo, none), inputs, false);
         const double eta2 = std::pow(index_ratio(c), 2);
         const double alpha = narrowest(oracle);
-        const SurfaceTraits traits = traits_of(c.material, 1.0f);
+        const MaterialTraits traits = traits_of(c.material, 1.0f);
         const glm::dvec3 albedo = traits.has(Lobe::diffuse)
                                       ? glm::dvec3(c.material.base_color) * (1.0 - double(c.material.metallic)) *
                                             (1.0 - double(c.material.transmission))
@@ -650,7 +650,7 @@ TEST_F(BsdfLobes, TheDensityOfAllIsThatOfWhatIsChosenAndFollowed) {
     std::array<std::size_t, lobe_count> chosen{};
     for_views([&](const Case& c, const glm::vec3& outgoing) {
         const oracle::Bsdf oracle = oracle_of(c);
-        const SurfaceTraits traits = traits_of(c.material, 1.0f);
+        const MaterialTraits traits = traits_of(c.material, 1.0f);
         const glm::dvec3 wo = glm::normalize(glm::dvec3(outgoing));
         const double ratio = index_ratio(c), alpha = narrowest(oracle);
         const auto outputs = run(c.material, view_of(c, outgoing, none), inputs, true);

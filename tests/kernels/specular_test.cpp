@@ -11,7 +11,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "flat/surface.h"
+#include "flat/material.h"
 #include "kernels/probe.h"
 #include "oracle/fresnel.h"
 #include "support/device/gpu.h"

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "flat/surface.h"
+#include "flat/material.h"
 #include "flat/textures.h"
 #include "kernels/probe.h"
 #include "oracle/dispersion.h"
@@ -113,7 +113,7 @@ TEST_F(Wavelength, IndicesHaveTheIndexAndTheAbbeNumberOfTheFile) {
         material.dispersion = glass.dispersion;
         const Scene scene;
         TextureTable textures(scene);
-        const gpu::SurfaceMaterial surface = surface_of(material, traits_of(material, 1.0f), 0.125, textures);
+        const gpu::SurfaceMaterial surface = gpu_material(material, traits_of(material, 1.0f), 0.125, textures);
         std::vector<gpu::WavelengthInput> inputs;
         for (const float l : {0.5876f, 0.4861f, 0.6563f}) inputs.push_back({l, surface.ior, surface.cauchy});
         for (int i = 0; i <= 30; ++i) inputs.push_back({0.4f + 0.01f * float(i), surface.ior, surface.cauchy});

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/check/page.h"
-#include "app/check/record.h"
+#include "app/check/verdict.h"
 #include "support/files/browser.h"
 #include "support/files/files.h"
 #include "support/files/temporary_folder.h"

@@ -11,7 +11,7 @@
 
 #include "app/race/page.h"
 #include "app/race/pictures.h"
-#include "app/race/record.h"
+#include "app/race/data.h"
 #include "support/files/browser.h"
 #include "support/files/files.h"
 #include "support/files/process.h"

@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/race/pictures.h"
-#include "app/race/record.h"
+#include "app/race/data.h"
 #include "core/metrics.h"
 #include "unit/race_result.h"
 

@@ -12,7 +12,7 @@
 
 #include "app/checkpoint_file.h"
 #include "app/options.h"
-#include "app/record.h"
+#include "app/provenance.h"
 #include "render/estimators.h"
 #include "render/settings_rows.h"
 #include "support/scenes/scenes.h"
@@ -58,7 +58,7 @@ std::array<Settings, 2> two_settings(const auto& row) {
     return settings;
 }
 
-/// The words that give the option of that name the value that `settings` has, as their record tells it.
+/// The words that give the option of that name the value that `settings` has, as JSON tells it.
 Words words_of(const std::string& name, const Settings& settings) {
     const nlohmann::ordered_json json = settings_json(settings);
     const auto value = json.find(json_name(name));

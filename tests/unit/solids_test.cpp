@@ -28,7 +28,7 @@ Scene two_glasses() {
 std::string nested(const Scene& scene) { return nested_solids(scene, solid_shells(scene, traits_of(scene))); }
 
 std::vector<std::uint32_t> priorities(const Scene& scene) {
-    const std::vector<SurfaceTraits> traits = traits_of(scene);
+    const std::vector<MaterialTraits> traits = traits_of(scene);
     return priorities_of(scene, traits, solid_shells(scene, traits));
 }
 

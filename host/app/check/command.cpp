@@ -8,12 +8,12 @@
 #include <fmt/format.h>
 
 #include "app/check/page.h"
-#include "app/check/record.h"
+#include "app/check/verdict.h"
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/display.h"
 #include "app/outputs.h"
-#include "app/record.h"
+#include "app/provenance.h"
 #include "core/blocks.h"
 #include "core/error.h"
 #include "io/atomic_file.h"
@@ -115,10 +115,10 @@ ExitCode execute(const CheckOptions& options) {
     const auto within = [&](const char* name) {
         return options.report ? std::optional(*options.report / name) : std::nullopt;
     };
-    const std::optional<fs::path> page = within("index.html"), record = within("check.json");
+    const std::optional<fs::path> page = within("index.html"), verdict = within("check.json");
     // Its line goes to standard output.
     check_outputs({options.image, options.reference},
-                  {{"--junit", options.junit, ".xml"}, {"--report", page, ".html"}, {"--report", record, ".json"}},
+                  {{"--junit", options.junit, ".xml"}, {"--report", page, ".html"}, {"--report", verdict, ".json"}},
                   true);
     const NoisyPicture image = read_picture(options.image), reference = read_picture(options.reference);
     const Extent extent = image.mean.extent;
@@ -131,7 +131,7 @@ ExitCode execute(const CheckOptions& options) {
     if (options.junit) write_file(*options.junit, junit_xml(options, result));
     if (options.report) {
         const Display display = display_of(options.display, reference.mean, options.reference.string(), false);
-        write_file(*record, json_text(json, 2) + "\n");
+        write_file(*verdict, json_text(json, 2) + "\n");
         write_file(*page, check_page(json, result, image.mean, reference.mean, display));
     }
     print_result((options.json ? json_text(json, 2) : verdict_line(result)) + "\n");

@@ -3,7 +3,7 @@
 #include <cassert>
 
 #include "app/page/base64.h"
-#include "app/record.h"
+#include "app/provenance.h"
 #include "io/png.h"
 
 namespace vkcppm {

@@ -1,5 +1,5 @@
 #pragma once
-// How the kernels treat a glTF material: the one place where its factors and textures become a surface.
+// What kernels read of a glTF material: the one place where its factors and textures become that.
 
 #include <algorithm>
 #include <array>
@@ -32,7 +32,7 @@ struct LobeTraits {
 };
 
 /// What a material can show somewhere on a surface, textures and vertex colours considered.
-struct SurfaceTraits {
+struct MaterialTraits {
     std::array<LobeTraits, lobe_count> lobes{};
     bool metal = false;
     bool coat = false;     // a dielectric coat over a diffuse base
@@ -59,16 +59,16 @@ struct SurfaceTraits {
 };
 
 /// least_alpha: as of least_alphas() in scene/diagnosis/alpha.h.
-SurfaceTraits traits_of(const Material& material, float least_alpha);
+MaterialTraits traits_of(const Material& material, float least_alpha);
 
 /// [materials] Those of every material of the scene.
-std::vector<SurfaceTraits> traits_of(const Scene& scene);
+std::vector<MaterialTraits> traits_of(const Scene& scene);
 
-/// The surface that stands for the material. scale: frame units a metre. Its textures are added to `textures`.
-gpu::SurfaceMaterial surface_of(const Material& material, const SurfaceTraits& traits, double scale,
-                                TextureTable& textures);
+/// What kernels read of the material. scale: frame units a metre. Its textures are added to `textures`.
+gpu::SurfaceMaterial gpu_material(const Material& material, const MaterialTraits& traits, double scale,
+                                  TextureTable& textures);
 
 /// One line for `vkcppm info`: the lobes, their parameters, textures, emission.
-std::string describe_material(const Material& material, const SurfaceTraits& traits);
+std::string describe_material(const Material& material, const MaterialTraits& traits);
 
 }  // namespace vkcppm

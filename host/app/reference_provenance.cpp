@@ -1,4 +1,4 @@
-#include "app/reference_record.h"
+#include "app/reference_provenance.h"
 
 #include <cmath>
 #include <utility>
@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
-#include "app/record.h"
+#include "app/provenance.h"
 #include "app/version.h"
 #include "core/blocks.h"
 

@@ -57,7 +57,7 @@ ExrAttributes exr_attributes(const SceneOptions& options, const Scene& scene, co
 std::string stats_json(const RenderOptions& options, const Scene& scene, const Rendering& rendering,
                        const Display& display);
 
-/// As --stats and the record of a race have it.
+/// As --stats and race.json have it.
 nlohmann::ordered_json stop_at_json(const StopAt& stop_at);
 
 /// The passes and totals as a table to read.

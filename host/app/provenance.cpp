@@ -1,4 +1,4 @@
-#include "app/record.h"
+#include "app/provenance.h"
 
 #include <algorithm>
 #include <iterator>

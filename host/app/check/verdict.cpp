@@ -1,11 +1,11 @@
-#include "app/check/record.h"
+#include "app/check/verdict.h"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 
 #include "app/measures.h"
-#include "app/record.h"
+#include "app/provenance.h"
 #include "app/version.h"
 #include "core/blocks.h"
 

@@ -1,4 +1,4 @@
-#include "app/race/record.h"
+#include "app/race/data.h"
 
 #include <cmath>
 #include <iterator>
@@ -8,7 +8,7 @@
 
 #include "app/measures.h"
 #include "app/page/html.h"
-#include "app/record.h"
+#include "app/provenance.h"
 #include "app/version.h"
 #include "core/display.h"
 #include "study/seeds.h"

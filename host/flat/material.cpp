@@ -1,4 +1,4 @@
-#include "flat/surface.h"
+#include "flat/material.h"
 
 #include <algorithm>
 #include <array>
@@ -108,7 +108,7 @@ static_assert(TEXTURE_EMISSIVE + 1 + textures_of_extensions == TEXTURE_COUNT, "e
 
 }  // namespace
 
-bool SurfaceTraits::glossy() const {
+bool MaterialTraits::glossy() const {
     for (std::size_t i = 0; i < lobes.size(); ++i) {
         if (Lobe(i) == Lobe::diffuse) continue;
         // Another lobe that gathers, or one that takes from the diffuse lobe by the direction.
@@ -117,8 +117,8 @@ bool SurfaceTraits::glossy() const {
     return false;
 }
 
-SurfaceTraits traits_of(const Material& m, float least_alpha) {
-    SurfaceTraits t;
+MaterialTraits traits_of(const Material& m, float least_alpha) {
+    MaterialTraits t;
     t.unlit = m.unlit;
     t.alpha = is_partly_there(m, least_alpha);
     t.culled = !m.double_sided && !is_glass(m);
@@ -143,67 +143,67 @@ SurfaceTraits traits_of(const Material& m, float least_alpha) {
     return t;
 }
 
-std::vector<SurfaceTraits> traits_of(const Scene& scene) {
+std::vector<MaterialTraits> traits_of(const Scene& scene) {
     const std::vector<float> alphas = least_alphas(scene);
-    std::vector<SurfaceTraits> traits;
+    std::vector<MaterialTraits> traits;
     for (std::size_t i = 0; i < alphas.size(); ++i) traits.push_back(traits_of(scene.materials[i], alphas[i]));
     return traits;
 }
 
-gpu::SurfaceMaterial surface_of(const Material& m, const SurfaceTraits& traits, double scale, TextureTable& table) {
-    gpu::SurfaceMaterial surface{};
-    surface.color = m.base_color;
-    surface.emission = m.emission;
-    surface.ior = m.ior == 0.0f ? infinite_ior : m.ior;
-    surface.metallic = is_black_metal(m) ? 0.0f : m.metallic;
-    surface.roughness = m.roughness;
-    surface.transmission = is_black_metal(m) ? 0.0f : m.transmission;
-    surface.specular = is_black_metal(m) ? 0.0f : m.specular;
-    surface.specular_color = m.specular_color;
-    surface.opacity = m.opacity;
+gpu::SurfaceMaterial gpu_material(const Material& m, const MaterialTraits& traits, double scale, TextureTable& table) {
+    gpu::SurfaceMaterial read{};
+    read.color = m.base_color;
+    read.emission = m.emission;
+    read.ior = m.ior == 0.0f ? infinite_ior : m.ior;
+    read.metallic = is_black_metal(m) ? 0.0f : m.metallic;
+    read.roughness = m.roughness;
+    read.transmission = is_black_metal(m) ? 0.0f : m.transmission;
+    read.specular = is_black_metal(m) ? 0.0f : m.specular;
+    read.specular_color = m.specular_color;
+    read.opacity = m.opacity;
     if (traits.absorbs) {
         for (int channel = 0; channel < 3; ++channel) {
             // Of what is 0 after any distance nothing is left after the least; not infinite, for the distance may be 0.
             constexpr double most = 1e30;
             const double color = m.attenuation_color[channel];
             const double distance = double(m.attenuation_distance) * scale;
-            surface.absorption[channel] = float(color > 0.0 ? std::min(most, -std::log(color) / distance) : most);
+            read.absorption[channel] = float(color > 0.0 ? std::min(most, -std::log(color) / distance) : most);
         }
     }
     if (traits.disperses) {
         // Abbe number V = (n_d - 1) / (n_F - n_C), lines d, F, C of the spectrum; micrometres.
         const double abbe = 20.0 / double(m.dispersion);
-        surface.cauchy = float((double(m.ior) - 1.0) / (abbe * (1.0 / (0.4861 * 0.4861) - 1.0 / (0.6563 * 0.6563))));
+        read.cauchy = float((double(m.ior) - 1.0) / (abbe * (1.0 / (0.4861 * 0.4861) - 1.0 / (0.6563 * 0.6563))));
     }
     if (traits.anisotropic) {
         const double angle = m.anisotropy_rotation;
-        surface.anisotropy = {float(std::cos(angle)), float(std::sin(angle)), m.anisotropy};
+        read.anisotropy = {float(std::cos(angle)), float(std::sin(angle)), m.anisotropy};
     }
     if (traits.iridescent) {
-        surface.iridescence = m.iridescence;
-        surface.film_index = m.iridescence_ior;
-        surface.film_thickness = 1e-3f * glm::vec2(m.iridescence_thickness_minimum, m.iridescence_thickness_maximum);
+        read.iridescence = m.iridescence;
+        read.film_index = m.iridescence_ior;
+        read.film_thickness = 1e-3f * glm::vec2(m.iridescence_thickness_minimum, m.iridescence_thickness_maximum);
     }
-    surface.sheen_color = m.sheen_color;
-    surface.sheen_roughness = m.sheen_roughness;
-    surface.clearcoat = m.clearcoat;
-    surface.clearcoat_roughness = m.clearcoat_roughness;
-    surface.alpha_cutoff = m.alpha_cutoff;
-    surface.normal_scale = m.normal_scale;
-    surface.clearcoat_normal_scale = m.clearcoat_normal_scale;
+    read.sheen_color = m.sheen_color;
+    read.sheen_roughness = m.sheen_roughness;
+    read.clearcoat = m.clearcoat;
+    read.clearcoat_roughness = m.clearcoat_roughness;
+    read.alpha_cutoff = m.alpha_cutoff;
+    read.normal_scale = m.normal_scale;
+    read.clearcoat_normal_scale = m.clearcoat_normal_scale;
     const auto textures = textures_of(m);
     for (std::size_t i = 0; i < textures.size(); ++i)
-        surface.texture[i] = table.add(*textures[i].texture, textures[i].encoding == Encoding::srgb);
-    if (m.double_sided) surface.flags |= SURFACE_DOUBLE_SIDED;
-    if (traits.thin) surface.flags |= SURFACE_THIN;
-    if (traits.alpha) surface.flags |= m.alpha == Material::Alpha::mask ? SURFACE_MASK : SURFACE_BLEND;
-    if (traits.unlit) surface.flags |= SURFACE_UNLIT;
-    if (traits.textured) surface.flags |= SURFACE_TEXTURED;
-    if (traits.culled) surface.flags |= SURFACE_CULLED;
-    return surface;
+        read.texture[i] = table.add(*textures[i].texture, textures[i].encoding == Encoding::srgb);
+    if (m.double_sided) read.flags |= SURFACE_DOUBLE_SIDED;
+    if (traits.thin) read.flags |= SURFACE_THIN;
+    if (traits.alpha) read.flags |= m.alpha == Material::Alpha::mask ? SURFACE_MASK : SURFACE_BLEND;
+    if (traits.unlit) read.flags |= SURFACE_UNLIT;
+    if (traits.textured) read.flags |= SURFACE_TEXTURED;
+    if (traits.culled) read.flags |= SURFACE_CULLED;
+    return read;
 }
 
-std::string describe_material(const Material& m, const SurfaceTraits& t) {
+std::string describe_material(const Material& m, const MaterialTraits& t) {
     std::vector<std::string> parts;
     const auto roughness = [](float r) { return r > 0.0f ? fmt::format("roughness {:g}", r) : std::string("smooth"); };
     if (t.unlit) parts.push_back(fmt::format("unlit, seen as {}", text(m.base_color)));
