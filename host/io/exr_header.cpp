@@ -112,7 +112,9 @@ private:
             }
             in_.seekg(begin + size);
         }
-        if (part.data) check_chunks(part);
+        // OpenEXR would take it to be some window, with chunks that nobody has looked at.
+        if (!part.data) fail("its header has no data window");
+        check_chunks(part);
     }
 
     /// False where a value of that type does not end after `size` bytes: OpenEXR would go on reading where it does.
