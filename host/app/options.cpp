@@ -447,6 +447,9 @@ void declare(CLI::App& app, RaceOptions& options) {
     add_display(app, options.display, "pictures");
     add_picture(app, settings);
     add_settings(app, settings, {Kind::parameter});
+    add_setting(app, settings, "aovs",
+                "Show the layers of every entrant's picture, too: direct, caustic and rest; and add channels to its\n"
+                "EXR, as vkcppm SCENE does");
     add_device(app, options.device);
     app.add_flag("--quiet", options.quiet, "No progress, only warnings and errors");
 }

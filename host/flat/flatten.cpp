@@ -227,7 +227,8 @@ struct MeshToScene {
     }
 };
 
-/// An instance so small that its way in has no floats is not there, nor is a second one in the same place.
+/// An instance so small that its way in has no floats is not there, nor is one whose way out has none, as it shows a
+/// line or a point (is_shareable keeps its axes alike), nor a second one in the same place.
 std::vector<std::uint32_t> distinct_instances(const Scene& scene, const std::vector<MeshToScene>& placed) {
     const auto key = [&](std::uint32_t i) {
         const MeshToScene& p = placed[i];
@@ -238,7 +239,7 @@ std::vector<std::uint32_t> distinct_instances(const Scene& scene, const std::vec
     std::vector<std::uint32_t> kept;
     for (std::uint32_t i = 0; i < placed.size(); ++i) {
         constexpr double most = 1e15;
-        if (placed[i].magnified() < most) kept.push_back(i);
+        if (placed[i].magnified() < most && norm(glm::dmat3(placed[i].linear)) < most) kept.push_back(i);
     }
     std::vector<std::uint32_t> sorted = kept;
     std::ranges::sort(sorted,

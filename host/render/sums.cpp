@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include <fmt/format.h>
+
 namespace vkcppm {
 namespace {
 
@@ -48,13 +50,14 @@ std::map<std::string, std::vector<float>> surface_channels(const IterationSums& 
         add("Albedo." + colour, [&](Sums s) { return mean(s.albedo[c], s); });
         add(std::string("N.") + "XYZ"[c], [&](Sums s) { return mean(s.normal[c], s); });
         const auto layer = [&](Sums s, std::uint32_t l) { return s.layer[l][c] / iterations; };
-        add("direct." + colour, [&](Sums s) { return layer(s, LAYER_DIRECT); });
-        add("caustic." + colour, [&](Sums s) { return layer(s, LAYER_CAUSTIC); });
-        std::vector<float>& rest = channels["rest." + colour];
+        for (std::uint32_t l = 0; l < LAYERS; ++l) {
+            add(fmt::format("{}.{}", layer_names[l], colour), [&](Sums s) { return layer(s, l); });
+        }
+        std::vector<float>& rest = channels[fmt::format("{}.{}", layer_names[LAYERS], colour)];
         for (std::size_t i = 0; i < sums.surfaces.size(); ++i) {
-            const Sums s = sums.surfaces[i];
-            const double all = mean_of(sums.film[i][c], sums.iterations);
-            rest.push_back(float(all - layer(s, LAYER_DIRECT) - layer(s, LAYER_CAUSTIC)));
+            double left = mean_of(sums.film[i][c], sums.iterations);
+            for (std::uint32_t l = 0; l < LAYERS; ++l) left -= layer(sums.surfaces[i], l);
+            rest.push_back(float(left));
         }
     }
     return channels;

@@ -1,6 +1,7 @@
 #pragma once
 // What iterations add up to, and the picture and its channels as their mean: of a render, or of parts of one.
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -40,6 +41,9 @@ struct IterationSums {
 
 /// The mean, 0 where noise has left it below (shaders/kernels/resolve.comp).
 Image picture_of(const IterationSums& sums);
+
+/// Of the layers LAYER_*, and of what is left of the picture.
+inline constexpr std::array<const char*, LAYERS + 1> layer_names = {"direct", "caustic", "rest"};
 
 /// Channels [P] of the surfaces: ppm.radius (m), ppm.photons, ppm.batch, ppm.rejections, ppm.statistic (over its
 /// threshold), ppm.iterations, Z (m), Albedo.R/G/B, N.X/Y/Z, A, and the layers direct, caustic and rest. scale: frame

@@ -122,9 +122,11 @@ bool is_shareable(const glm::dmat4& to_world) {
     // What rounding of either matrix does to a point that goes there and back, in roundings: 1 of turns and of scales
     // along the mesh's axes, more where axes that were square are no longer.
     constexpr double most = 16.0;
+    // Of its axes: a mesh that is flat along one that is longer by more would leave the range of floats in the frame.
+    constexpr double least_ratio = 1e-12;
     glm::dmat3 linear(to_world);
-    const double size = std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])});
-    if (!(size > 0.0)) return false;
+    const auto [least, size] = std::minmax({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])});
+    if (!(least > least_ratio * size)) return false;
     linear /= size;
     const glm::dmat3 back = glm::inverse(linear);
     for (int row = 0; row < 3; ++row) {

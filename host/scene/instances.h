@@ -59,7 +59,8 @@ std::vector<SceneBox> instance_boxes(const Scene& scene);
 /// The box round all that the scene shows.
 SceneBox world_box(const Scene& scene);
 
-/// False of a transform that shears so much that what float rounds in it and in its inverse would count.
+/// False of a transform that shears so much, or is so much longer along one axis than along another, that what float
+/// rounds in it and in its inverse would count.
 bool is_shareable(const glm::dmat4& to_world);
 
 }  // namespace vkcppm

@@ -87,6 +87,7 @@ public:
         if (run_.curves.size() > 1) return;
         run_.image = std::move(image);
         run_.radius = integrator_->radii();
+        if (settings_.aovs) run_.aovs = integrator_->aovs();
     }
 
     void keep() const {
@@ -146,7 +147,7 @@ RaceResult run_race(const Scene& scene, const RaceSettings& race, const Image& r
                     const KeepRacing& keep_racing, const RaceStates& states) {
     assert(!race.entrants.empty() && race.seeds > 0);
     RaceResult result;
-    for (const Entrant& entrant : race.entrants) result.runs.push_back({entrant, {}, {}, {}, {}, {}});
+    for (const Entrant& entrant : race.entrants) result.runs.emplace_back().entrant = entrant;
     const auto is_sppm = [](const Entrant& entrant) { return entrant.settings.estimator == "sppm"; };
     const auto sppm = std::ranges::find_if(race.entrants, is_sppm);
     if (sppm != race.entrants.end()) result.baseline = std::size_t(sppm - race.entrants.begin());

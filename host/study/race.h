@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -38,11 +39,12 @@ struct RaceSettings {
 
 /// What an entrant did.
 struct RaceRun {
-    Entrant entrant;                    // settings as resolved
-    std::vector<Curve> curves;          // [seeds] snapshots as is_snapshot says, and at the end
-    std::vector<Report> reports;        // [seeds]
-    Image image;                        // of the first seed, at its end
-    std::vector<float> radius;          // [P] m, the same
+    Entrant entrant;                                 // settings as resolved
+    std::vector<Curve> curves;                       // [seeds] snapshots as is_snapshot says, and at the end
+    std::vector<Report> reports;                     // [seeds]
+    Image image;                                     // of the first seed, at its end
+    std::vector<float> radius;                       // [P] m, the same
+    std::map<std::string, std::vector<float>> aovs;  // the same: Rendering::aovs, where the settings ask for them
     std::vector<double> squared_error;  // [P] mean over channels and seeds, each at its end, (W m^-2 sr^-1)^2
 };
 

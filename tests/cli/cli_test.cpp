@@ -803,7 +803,7 @@ TEST_F(Cli, AReferenceRefusesWhatItCannotMake) {
     expect_failure(run({"reference", scene("caustic")}), 2, {"-o"}, "nowhere to write");
 }
 
-TEST_F(Cli, TheRecordNamesTheEnvironmentAndTheLens) {
+TEST_F(Cli, StatsNameTheEnvironmentAndTheLens) {
     write_exr(folder_ / "sky.exr", Image{{2, 1}, {{1, 1, 1}, {2, 2, 2}}});
     expect_done(render({"-o", "a.exr", "--stats", "a.json", "--environment", (folder_ / "sky.exr").string(),
                         "--thin-glass", "solid", "--aperture", "0.125", "--focus-distance", "2.5"}));

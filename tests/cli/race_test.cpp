@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -85,6 +86,26 @@ TEST_F(RaceCli, TwiceGivesTheSameCurvesAndPictures) {
     EXPECT_EQ(told["entrants"][1]["settings"]["alpha"], 0.5);
     EXPECT_EQ(told["interrupted"], false);
     EXPECT_TRUE(contains(told["command"], "vkcppm race ")) << told["command"];
+}
+
+TEST_F(RaceCli, TellsTheLayersOfEveryEntrant) {
+    make_reference();
+    const auto result = race("layers", {"--reference", "ref.exr", "--estimators", "cppm", "--aovs"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const std::set<std::string> names = test::names_in(folder_ / "layers");
+    for (const char* layer : {"direct", "caustic", "rest"}) {
+        EXPECT_TRUE(names.contains(fmt::format("cppm-{}.png", layer))) << layer;
+    }
+    const auto plain = race("plain", {"--reference", "ref.exr", "--estimators", "cppm"});
+    ASSERT_EQ(plain.exit_code, 0) << plain.err;
+    EXPECT_EQ(test::read_bytes(folder_ / "layers/cppm.png"), test::read_bytes(folder_ / "plain/cppm.png"));
+    const ExrChannels channels = read_exr_channels(folder_ / "layers/cppm.exr", "");
+    for (std::size_t i = 0; i < channels.extent.pixels(); ++i) {
+        double sum = 0.0;
+        for (const char* layer : {"direct.R", "caustic.R", "rest.R"}) sum += channels.values.at(layer)[i];
+        const double whole = channels.values.at("R")[i];
+        EXPECT_NEAR(sum, whole, 1e-5 * std::abs(whole) + 1e-7) << "pixel " << i;
+    }
 }
 
 TEST_F(RaceCli, GoesOnWithMoreIterationsAndSeeds) {

@@ -144,7 +144,7 @@ TEST(CheckRecord, JunitHasACaseForEveryCondition) {
     EXPECT_NE(xml.find("a &lt;/script&gt;&amp;&quot;&lt;b&gt;.exr"), std::string::npos) << xml;
 }
 
-TEST(CheckPage, NeedsNoNetworkAndHoldsTheRecord) {
+TEST(CheckPage, NeedsNoNetworkAndHoldsTheVerdict) {
     const Files files(1.0f);
     const std::string page =
         check_page(files.json, files.found, files.image.mean, files.reference.mean, {ToneMap::none, 0.0});

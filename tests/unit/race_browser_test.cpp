@@ -117,7 +117,7 @@ TEST_F(RaceInBrowser, SaysWhoComesFirstToAnError) {
     EXPECT_NE(verdict().find("Nobody comes to " + metric), std::string::npos) << verdict() << ": one seed does";
 }
 
-TEST_F(RaceInBrowser, NumbersAreThoseOfTheRecord) {
+TEST_F(RaceInBrowser, NumbersAreThoseOfTheData) {
     write({"sppm", "cppm", "appm"});
     const std::string page = drawn("#metric=relmse");
     EXPECT_EQ(test::all(page, "data-noise=\"([0-9.]*)\"").size(), 2u)

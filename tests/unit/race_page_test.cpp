@@ -2,18 +2,21 @@
 
 #include "app/race/page.h"
 
+#include <algorithm>
 #include <cmath>
 #include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "app/race/pictures.h"
 #include "app/race/data.h"
 #include "core/metrics.h"
+#include "render/sums.h"
 #include "unit/race_result.h"
 
 namespace vkcppm {
@@ -91,7 +94,7 @@ TEST(RacePage, IsWellFormedAndNeedsNoNetwork) {
     EXPECT_FALSE(std::regex_search(files.page, std::regex(R"(url\((?!#))"))) << "an url() that is no place on the page";
 }
 
-TEST(RacePage, HoldsTheRecordWithoutTheCurvesOfSeeds) {
+TEST(RacePage, HoldsTheDataWithoutTheCurvesOfSeeds) {
     const Files files(ten);
     Json expected = files.json;
     for (Json& entrant : expected["entrants"]) {
@@ -107,7 +110,7 @@ TEST(RacePage, HoldsTheRecordWithoutTheCurvesOfSeeds) {
     }
 }
 
-TEST(RaceRecord, HoldsEveryEntrantAndMetric) {
+TEST(RaceData, HoldsEveryEntrantAndMetric) {
     const Files files(ten);
     EXPECT_EQ(files.json["baseline"], "sppm");
     EXPECT_EQ(files.json["seeds"], Json({7, 8}));
@@ -136,12 +139,12 @@ TEST(RaceRecord, HoldsEveryEntrantAndMetric) {
     }
 }
 
-TEST(RaceRecord, FilesAreNamedAfterEntrants) {
+TEST(RaceData, FilesAreNamedAfterEntrants) {
     EXPECT_EQ(file_stem({"cppm:beta=1.5:k=0.7", {}}), "cppm-beta-1.5-k-0.7");
     EXPECT_EQ(file_stem({"sppm-kz", {}}), "sppm-kz");
 }
 
-TEST(RaceRecord, CurvesHaveEverySnapshotToTheLastBit) {
+TEST(RaceData, CurvesHaveEverySnapshotToTheLastBit) {
     const RaceResult result = test::made_up_race({"cppm", "cppm:k=0.7"});
     std::istringstream csv(curves_csv(result));
     std::string line;
@@ -168,16 +171,41 @@ TEST(RaceRecord, CurvesHaveEverySnapshotToTheLastBit) {
     EXPECT_FALSE(std::getline(csv, line)) << line;
 }
 
+TEST(RacePictures, LayersAreShownWhereTheyAreTold) {
+    RaceResult result = test::made_up_race({"sppm", "cppm"});
+    const Image reference{{8, 6}, std::vector<glm::vec3>(48, glm::vec3(0.5f))};
+    const auto views_of = [&](std::size_t entrant) {
+        const RacePictures pictures = race_pictures(result, reference, {});
+        std::vector<std::string> views;
+        for (const auto& [view, bitmap] : pictures.entrants[entrant]) views.push_back(view);
+        return views;
+    };
+    RaceRun& run = result.runs[1];
+    run.entrant.settings.aovs = true;
+    for (const char* colour : {"R", "G", "B"}) {
+        for (const char* layer : layer_names) run.aovs[fmt::format("{}.{}", layer, colour)].assign(48, 0.0f);
+        run.aovs[fmt::format("caustic.{}", colour)].assign(48, 1.0f);
+    }
+    EXPECT_EQ(views_of(0), (std::vector<std::string>{"difference", "picture", "radius"}));
+    EXPECT_EQ(views_of(1), (std::vector<std::string>{"caustic", "difference", "direct", "picture", "radius", "rest"}));
+    std::vector<std::string> named = entrant_views(run.entrant.settings);
+    std::ranges::sort(named);
+    EXPECT_EQ(named, views_of(1)) << "files are written for these";
+    const EntrantPictures views = race_pictures(result, reference, {}).entrants[1];
+    EXPECT_EQ(views.at("caustic").rgb[7], glm::u8vec3(255));
+    EXPECT_EQ(views.at("direct").rgb[7], glm::u8vec3(0));
+}
+
 TEST(RacePictures, DifferencesAndRadiiShareTheirScales) {
     const RaceResult result = test::made_up_race({"sppm", "cppm", "appm"});  // pictures of 0.25, 0.5, 0.75
     const Image reference{{8, 6}, std::vector<glm::vec3>(48, glm::vec3(0.5f))};
     const RacePictures pictures = race_pictures(result, reference, {ToneMap::none, 1.0});
     EXPECT_EQ(pictures.difference.high, 0.25);
-    EXPECT_EQ(pictures.entrants[0].difference.rgb[0], false_colour(1.0));
-    EXPECT_EQ(pictures.entrants[1].difference.rgb[0], false_colour(0.0));
-    EXPECT_EQ(pictures.entrants[0].radius.rgb[0], false_colour(0.0));
-    EXPECT_EQ(pictures.entrants[2].radius.rgb[0], false_colour(1.0));
-    EXPECT_EQ(pictures.entrants[1].picture.rgb[0], glm::u8vec3(255)) << "0.5 a stop brighter";
+    EXPECT_EQ(pictures.entrants[0].at("difference").rgb[0], false_colour(1.0));
+    EXPECT_EQ(pictures.entrants[1].at("difference").rgb[0], false_colour(0.0));
+    EXPECT_EQ(pictures.entrants[0].at("radius").rgb[0], false_colour(0.0));
+    EXPECT_EQ(pictures.entrants[2].at("radius").rgb[0], false_colour(1.0));
+    EXPECT_EQ(pictures.entrants[1].at("picture").rgb[0], glm::u8vec3(255)) << "0.5 a stop brighter";
     for (std::size_t i = 0; i < 48; ++i) EXPECT_EQ(pictures.winner.map.rgb[i], entrant_colour(i % 3)) << "pixel " << i;
 }
 

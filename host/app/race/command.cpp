@@ -89,9 +89,8 @@ void check_race_outputs(const RaceOptions& options, const RaceInput& input, cons
     if (options.make_reference || !is_same_file(copy, input.reference)) names.push_back("reference.exr");
     if (!options.make_reference) inputs.push_back(input.reference);
     for (const Entrant& entrant : race.entrants) {
-        for (const char* rest : {".exr", ".png", "-difference.png", "-radius.png"}) {
-            names.push_back(file_stem(entrant) + rest);
-        }
+        names.push_back(file_stem(entrant) + ".exr");
+        for (const std::string& view : entrant_views(entrant.settings)) names.push_back(view_file(entrant, view));
     }
     std::vector<std::string> endings;
     for (const std::string& name : names) endings.push_back(fs::path(name).extension().string());
@@ -200,27 +199,26 @@ RaceResult race_with_progress(const Scene& scene, const RaceOptions& options, co
 void write_pictures(const RaceOptions& options, const RaceInput& input, const RaceResult& result,
                     const Image& reference, const RacePictures& pictures) {
     const auto write_bitmap = [&](const std::string& name, const Bitmap& bitmap) {
-        write_file(options.folder / (name + ".png"), encode_png(bitmap));
+        write_file(options.folder / name, encode_png(bitmap));
     };
     const fs::path copy = options.folder / "reference.exr";
     if (!is_same_file(copy, input.reference)) {
         write_exr(copy, reference, input.reference_attributes);
     }
-    write_bitmap("reference", pictures.reference);
-    write_bitmap("winner", pictures.winner.map);
-    write_bitmap("winner-around", pictures.winner_around.map);
+    write_bitmap("reference.png", pictures.reference);
+    write_bitmap("winner.png", pictures.winner.map);
+    write_bitmap("winner-around.png", pictures.winner_around.map);
     for (std::size_t e = 0; e < result.runs.size(); ++e) {
         const RaceRun& run = result.runs[e];
-        const std::string stem = file_stem(run.entrant);
         Rendering rendering;
         rendering.settings = run.entrant.settings;
         rendering.report = run.reports.front();
         ExrChannels channels = to_channels(run.image);
         channels.values["ppm.radius"] = run.radius;
-        write_exr(options.folder / (stem + ".exr"), channels, exr_attributes(options.scene, input.scene, rendering));
-        write_bitmap(stem, pictures.entrants[e].picture);
-        write_bitmap(stem + "-difference", pictures.entrants[e].difference);
-        write_bitmap(stem + "-radius", pictures.entrants[e].radius);
+        channels.values.insert(run.aovs.begin(), run.aovs.end());
+        write_exr(options.folder / (file_stem(run.entrant) + ".exr"), channels,
+                  exr_attributes(options.scene, input.scene, rendering));
+        for (const auto& [view, bitmap] : pictures.entrants[e]) write_bitmap(view_file(run.entrant, view), bitmap);
     }
 }
 

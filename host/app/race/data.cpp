@@ -100,6 +100,10 @@ std::string file_stem(const Entrant& entrant) {
     return stem;
 }
 
+std::string view_file(const Entrant& entrant, const std::string& view) {
+    return file_stem(entrant) + (view == "picture" ? "" : "-" + view) + ".png";
+}
+
 Json race_json(const RaceOptions& options, const RaceInput& input, const RaceResult& result,
                const RacePictures& pictures) {
     const RaceRun& first = result.runs.front();

@@ -16,6 +16,9 @@ namespace vkcppm {
 /// The name of an entrant's files, without a suffix: "cppm:beta=1.5" becomes "cppm-beta-1.5".
 std::string file_stem(const Entrant& entrant);
 
+/// The name of the PNG of a view of entrant_views(): "cppm.png" of the picture, else "cppm-radius.png".
+std::string view_file(const Entrant& entrant, const std::string& view);
+
 /// What a race was given besides its options.
 struct RaceInput {
     const Scene& scene;

@@ -30,9 +30,9 @@ Json pictures_json(const RacePictures& pictures) {
               {"ramp", data_uri(colour_ramp())},
               {"entrants", Json::array()}};
     for (const EntrantPictures& entrant : pictures.entrants) {
-        json["entrants"].push_back({{"picture", data_uri(entrant.picture)},
-                                    {"difference", data_uri(entrant.difference)},
-                                    {"radius", data_uri(entrant.radius)}});
+        Json views = Json::object();
+        for (const auto& [view, bitmap] : entrant) views[view] = data_uri(bitmap);
+        json["entrants"].push_back(std::move(views));
     }
     return json;
 }

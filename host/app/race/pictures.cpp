@@ -2,7 +2,10 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "io/png.h"
+#include "render/sums.h"
 #include "study/winner.h"
 
 namespace vkcppm {
@@ -33,7 +36,24 @@ WinnerPicture winner_picture(Extent extent, std::span<const std::vector<double>>
     return picture;
 }
 
+/// Light of one layer, as the picture has it.
+Image layer_of(const RaceRun& run, const char* layer) {
+    Image image{run.image.extent, std::vector<glm::vec3>(run.image.rgb.size())};
+    for (int c = 0; const char* colour : {"R", "G", "B"}) {
+        const std::vector<float>& values = run.aovs.at(fmt::format("{}.{}", layer, colour));
+        for (std::size_t i = 0; i < values.size(); ++i) image.rgb[i][c] = values[i];
+        ++c;
+    }
+    return image;
+}
+
 }  // namespace
+
+std::vector<std::string> entrant_views(const Settings& settings) {
+    std::vector<std::string> views = {"picture", "difference", "radius"};
+    if (settings.aovs) views.insert(views.end(), layer_names.begin(), layer_names.end());
+    return views;
+}
 
 glm::u8vec3 entrant_colour(std::size_t entrant) { return colours[entrant % colours.size()]; }
 
@@ -57,9 +77,12 @@ RacePictures race_pictures(const RaceResult& result, const Image& reference, con
     pictures.reference = to_bitmap(reference, display);
     for (const RaceRun& run : result.runs) {
         const std::vector<float> difference = absolute_difference(run.image, reference);
-        pictures.entrants.push_back({to_bitmap(run.image, display),
-                                     false_colours(extent, difference, pictures.difference),
-                                     false_colours(extent, run.radius, pictures.radius)});
+        EntrantPictures& views = pictures.entrants.emplace_back();
+        views["picture"] = to_bitmap(run.image, display);
+        views["difference"] = false_colours(extent, difference, pictures.difference);
+        views["radius"] = false_colours(extent, run.radius, pictures.radius);
+        if (!run.entrant.settings.aovs) continue;
+        for (const char* layer : layer_names) views[layer] = to_bitmap(layer_of(run, layer), display);
     }
     pictures.winner = winner_picture(extent, errors);
     pictures.winner_around = winner_picture(extent, errors_around);

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <glm/ext/vector_uint3_sized.hpp>
@@ -17,11 +19,11 @@ namespace vkcppm {
 
 inline constexpr int winner_reach = 4;  // pixels about one that decide who is nearest around it: 9x9
 
-struct EntrantPictures {
-    Bitmap picture;
-    Bitmap difference;  // |x - r|, mean over channels, W m^-2 sr^-1
-    Bitmap radius;      // m
-};
+/// What can be seen of an entrant: "picture"; "difference", |x - r|, mean over channels, W m^-2 sr^-1; "radius", m; and
+/// where its settings ask for further channels the layers direct, caustic and rest, which sum to the picture.
+std::vector<std::string> entrant_views(const Settings& settings);
+
+using EntrantPictures = std::map<std::string, Bitmap>;  // by the view
 
 struct WinnerPicture {
     Bitmap map;                  // entrant_colour of the winner, gray without one

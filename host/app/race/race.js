@@ -11,7 +11,10 @@ const views = [
   ['picture', 'Picture'],
   ['difference', 'Difference'],
   ['radius', 'Radius'],
-];
+  ['direct', 'Direct light'],
+  ['caustic', 'Caustics'],
+  ['rest', 'Rest'],
+].filter(([name]) => name in pictures.entrants[0]);
 const extent = {width: race.width, height: race.height};
 const cropSizes = cropSizesOf(extent);
 const percent = Math.round(100 * race.confidence);
