@@ -41,10 +41,19 @@ def truth(scene, options):
     return colour, numpy.sqrt(blocks(channels["StdErr"] ** 2, side)) / side
 
 
+def stated_squares(reference, stated):
+    """[height x width x 3] What the reference adds to the squared errors of channels. It states the mean over them:
+    alike beside their light, which comes to the relMSE that it states of itself; alike in themselves, a coloured
+    surface would have nearly all of it in the channel of which it shows least."""
+    squares = reference ** 2
+    share = squares / numpy.maximum(squares.mean(-1, keepdims=True), 1e-30)
+    return stated[..., None] ** 2 * share
+
+
 def squares_of(colour, reference, stated):
     """[pixels] of relMSE, less what the reference adds."""
     weight = 1.0 / (reference ** 2 + EPSILON)
-    return (((colour - reference) ** 2 - stated[..., None] ** 2) * weight).mean(-1).ravel()
+    return (((colour - reference) ** 2 - stated_squares(reference, stated)) * weight).mean(-1).ravel()
 
 
 def without_worst(colour, reference):
