@@ -39,7 +39,7 @@ function drawHead() {
   at('verdict').append(make('strong', {}, check.passes ? 'Passes' : 'Differs'), `: ${check.why}.`);
   at('verdict').className = check.passes ? 'pass' : 'alert';
   at('conditions').append(
-    make('thead', {}, row('th', ['', 'asked', 'found'])),
+    make('thead', {}, row('th', ['verdict', 'asked', 'found'])),
     make(
       'tbody',
       {},
@@ -63,7 +63,7 @@ function drawPlaces() {
     return;
   }
   at('places').append(
-    make('thead', {}, row('th', ['what', 'column', 'row', 'sigma', ''])),
+    make('thead', {}, row('th', ['what', 'column', 'row', 'sigma', 'show'])),
     make(
       'tbody',
       {},
