@@ -118,7 +118,7 @@ std::vector<Feature> features_of(const Scene& scene, const std::vector<MaterialT
     };
     // clang-format off
 #define MATERIAL(bit, NAME, words, trait) \
-    add(FEATURE_##NAME, reason_of(asked, [](const MaterialTraits& t) { return t.trait; }));
+    add(FEATURE_##NAME, reason_of(asked, [](const MaterialTraits& t) { return t.asks_for_##NAME(); }));
 #define SCENE(bit, NAME, words) add(FEATURE_##NAME, reason_of<FEATURE_##NAME>(asked));
 #define SETTING(bit, NAME, words)
     FEATURE_TABLE(MATERIAL, SCENE, SETTING)

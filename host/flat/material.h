@@ -56,6 +56,13 @@ struct MaterialTraits {
     bool is_lamp() const { return emits && !unlit; }
     /// What arrives is weighed by its direction: it gathers, and not on the diffuse lobe alone.
     bool glossy() const;
+    /// bool asks_for_<NAME>() const: the trait of each row MATERIAL of FEATURE_TABLE.
+#define ASKS_FOR(bit, NAME, words, trait) \
+    bool asks_for_##NAME() const { return trait; }
+#define NO_TRAIT(bit, NAME, words)
+    FEATURE_TABLE(ASKS_FOR, NO_TRAIT, NO_TRAIT)
+#undef ASKS_FOR
+#undef NO_TRAIT
 };
 
 /// least_alpha: as of least_alphas() in scene/diagnosis/alpha.h.

@@ -1,5 +1,6 @@
 #include "render/buffers.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <utility>
@@ -18,6 +19,17 @@ constexpr auto rows = std::to_array<BufferRow>({
     BUFFERS(ROW)
 #undef ROW
 });
+
+/// What kernels decode from texels of four words (RECORDS) is whole ones: a rest would shift all entries behind it.
+constexpr bool records_are_whole_texels() {
+    return std::ranges::all_of(rows, [](const BufferRow& row) {
+        const Access access = bound_buffer(row.binding).access;
+        const bool of_four = has_texels(access) && texel_bytes(access) == 16;
+        return !of_four || row.element_bytes <= 4 || row.element_bytes % 16 == 0;
+    });
+}
+static_assert(records_are_whole_texels(),
+              "an Element that is read as texels of four words is not whole ones: add `unused` words at its end");
 
 }  // namespace
 }  // namespace gpu

@@ -51,7 +51,7 @@ enum class Entries {
     error_groups,     // ERROR_GROUPS, where errors are estimated
 };
 
-enum class Life { scratch, carried };
+enum class Life { scratch, carried, summed };
 
 /// After which pass a hash covers it.
 enum class Hashed { never, eye, gather, update, from_knn, apart };

@@ -436,11 +436,11 @@ template <typename T> void Integrator::set_pixels(Binding binding, std::span<con
 void Integrator::begin_slice(std::uint32_t first, std::span<const gpu::PixelState> states) {
     assert(states.size() == bands_.pixels);
     set_pixels(Binding::pixels, states);
-    set_pixels(Binding::film, std::span<const gpu::Film>(std::vector<gpu::Film>(bands_.pixels)));
-    if (counts_.aovs) set_pixels(Binding::aovs, std::span<const gpu::Aovs>(std::vector<gpu::Aovs>(bands_.pixels)));
-    if (counts_.errors) {
-        const std::vector<glm::vec4> nothing(bands_.each * ERROR_GROUPS, glm::vec4(0.0f));
-        for (std::uint32_t band = 0; band < bands_.count(); ++band) buffers_.at(Binding::errors, band).upload(nothing);
+    for (const BufferRow& row : buffer_rows()) {
+        const std::uint64_t entries = entries_of(row, counts_);
+        if (row.life != Life::summed || entries == 0) continue;
+        const std::vector<std::byte> zeros(entries * row.element_bytes);
+        for (std::uint32_t band = 0; band < bands_.count(); ++band) buffers_.at(row.binding, band).upload(zeros);
     }
     auto status = buffer(Binding::status).download_value<gpu::Status>();
     status.completed = first;

@@ -58,7 +58,7 @@ public:
     /// Scene, camera and settings must be those of then. Throws Error(bad_scene) where `state` cannot be theirs.
     void restore(const Report& report, std::span<const std::byte> state);
 
-    /// Goes on with iteration `first`, after nothing: film, channels and errors begin anew, and pixels take these
+    /// Goes on with iteration `first`, after nothing: what is summed begins anew, and pixels take these
     /// states [P], whose radii stay where photons gave them, whatever the estimator's rule. Grid and statistics are
     /// those that stand there. Reports count from here on.
     void begin_slice(std::uint32_t first, std::span<const gpu::PixelState> states);

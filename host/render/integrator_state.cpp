@@ -53,7 +53,7 @@ std::uint64_t Integrator::arrays_of(const BufferRow& row) const { return entries
 /// however many bands there are. Buffers: those of this integrator, const or not.
 template <typename Buffers, typename Use> void Integrator::each_carried(Buffers& buffers, Use use) const {
     for (const BufferRow& row : buffer_rows()) {
-        if (row.life != Life::carried) continue;
+        if (row.life == Life::scratch) continue;
         if (row.per != Per::pixel) {
             use(buffers.at(row.binding), 0, buffers.at(row.binding).bytes());
             continue;

@@ -2,25 +2,38 @@
 //   READS, STORES, UPDATES   name[] as a storage buffer that is read, written, or both
 //   VALUE, UNIFORM           name, the one Element of a storage buffer or uniform block
 //   TEXELS, FLOAT_TEXELS     name_texels, to be fetched by hand
-//   RECORDS, WORD_RECORDS    name_at(index): the Element decoded from texels, by its FIELDS (shared/types.h)
+//   RECORDS, WORD_RECORDS    name_at(index): the Element, a struct, decoded from texels by its FIELDS
+//                            (shared/types.h), in texels of four words or of one
+// What the access of a row does not have is an undeclared STORAGE_OF_<access> or TEXELS_OF_<access>.
 #ifndef RECORDS_GLSL
 #define RECORDS_GLSL
 
-#define STORAGE_BLOCK(qualifier, number, name, Element) \
-    layout(binding = number, scalar) qualifier buffer name##_block { Element name[]; };
-#define READS(number, name, Element, per, entries, access, life, hashed) STORAGE_BLOCK(readonly, number, name, Element)
+#define STORAGE_OF_storage 0
+#define STORAGE_OF_records 0
+#define STORAGE_OF_words 0
+#define TEXELS_OF_records TEXELS_BINDING
+#define TEXELS_OF_words TEXELS_BINDING
+#define TEXELS_OF_uint_texels TEXELS_BINDING
+#define TEXELS_OF_float_texels TEXELS_BINDING
+#define TEXELS_OF_word_texels TEXELS_BINDING
+
+#define STORAGE_BLOCK(qualifier, number, name, Element, access) \
+    layout(binding = STORAGE_OF_##access + number, scalar) qualifier buffer name##_block { Element name[]; };
+#define READS(number, name, Element, per, entries, access, life, hashed) \
+    STORAGE_BLOCK(readonly, number, name, Element, access)
 #define STORES(number, name, Element, per, entries, access, life, hashed) \
-    STORAGE_BLOCK(writeonly, number, name, Element)
-#define UPDATES(number, name, Element, per, entries, access, life, hashed) STORAGE_BLOCK(, number, name, Element)
+    STORAGE_BLOCK(writeonly, number, name, Element, access)
+#define UPDATES(number, name, Element, per, entries, access, life, hashed) \
+    STORAGE_BLOCK(, number, name, Element, access)
 #define VALUE(number, name, Element, per, entries, access, life, hashed) \
-    layout(binding = number, scalar) buffer name##_block { Element name; };
+    layout(binding = STORAGE_OF_##access + number, scalar) buffer name##_block { Element name; };
 #define UNIFORM(number, name, Element, per, entries, access, life, hashed) \
     layout(binding = number, scalar) uniform name##_block { Element name; };
 
 #define TEXELS(number, name, Element, per, entries, access, life, hashed) \
-    layout(binding = TEXELS_BINDING + number) uniform usamplerBuffer name##_texels;
+    layout(binding = TEXELS_OF_##access + number) uniform usamplerBuffer name##_texels;
 #define FLOAT_TEXELS(number, name, Element, per, entries, access, life, hashed) \
-    layout(binding = TEXELS_BINDING + number) uniform samplerBuffer name##_texels;
+    layout(binding = TEXELS_OF_##access + number) uniform samplerBuffer name##_texels;
 
 // ---- decoding ----
 

@@ -7,8 +7,8 @@
 // sampling; Veach and Guibas 1995). Of all that a path asks for of one group of lights one is chosen in proportion to
 // what it brings and one ray traced: else the longest path of a SIMD group (subgroup) would hold up the others longer.
 // Reads the scene, and pixels; writes hit_position, hit_weight, hit_emission, hit_surface in glossy scenes, aovs where
-// asked for, searches, and eye_paths where a path is unfinished. O(bounces x log triangles). Fails by running out of
-// steps: the path then goes on next round.
+// asked for, searches, and eye_paths and light_rays where a path is unfinished. O(bounces x log triangles). Fails by
+// running out of steps: the path then goes on next round.
 #include "include/kernel.glsl"
 #include "include/eye_path.glsl"
 #include "include/pixels.glsl"

@@ -17,6 +17,7 @@
 //            words        the same, of one integer
 //   life     scratch      made anew by every iteration, or never written by one
 //            carried      an iteration leaves it to the next: checkpoints hold it
+//            summed       likewise, of a pixel: a sum over iterations, which a slice of a job begins anew from zeros
 //   hashed   never, eye, gather, update: after that pass; from_knn: after that and those behind it; apart: by rules of
 //            its own in host/render/integrator_state.cpp. A hash goes over its buffers in the order of the
 //            rows: a new one changes the hash of its pass
@@ -50,14 +51,14 @@
 #define HIT_POSITION(ROW)      ROW(16, hit_position, HitPosition, band_pixel, one, records, scratch, eye)
 #define HIT_WEIGHT(ROW)        ROW(17, hit_weight, HitWeight, band_pixel, one, records, scratch, eye)
 #define HIT_EMISSION(ROW)      ROW(18, hit_emission, HitEmission, band_pixel, one, records, scratch, eye)
-#define AOVS(ROW)              ROW(19, aovs, Aovs, pixel, where_aovs, storage, carried, eye)
+#define AOVS(ROW)              ROW(19, aovs, Aovs, pixel, where_aovs, storage, summed, eye)
 #define HIT_SURFACE(ROW)       ROW(20, hit_surface, HitSurface, band_pixel, where_glossy, records, scratch, apart)
 #define EYE_PATHS(ROW)         ROW(21, eye_paths, EyeState, band_pixel, one, storage, scratch, never)
 #define SEARCHES(ROW)          ROW(22, searches, uint, band_pixel, one, storage, scratch, never)
 #define CURSORS(ROW)           ROW(23, cursors, Cursor, band_pixel, one, storage, scratch, never)
 #define NEAREST(ROW)           ROW(24, nearest, float, band_pixel, nearest, storage, scratch, never)
 #define GATHERED(ROW)          ROW(25, gathered, Gathered, band_pixel, one, records, scratch, gather)
-#define FILM(ROW)              ROW(26, film, Film, pixel, one, words, carried, update)
+#define FILM(ROW)              ROW(26, film, Film, pixel, one, words, summed, update)
 #define PIXELS(ROW)            ROW(27, pixels, PixelState, pixel, one, records, carried, from_knn)
 #define TALLY(ROW)             ROW(28, tally, uint, pixel, tallies, words, carried, from_knn)
 #define MOMENTS(ROW)           ROW(29, moments, float, pixel, moments, words, carried, from_knn)
@@ -82,7 +83,7 @@
 #define HIT_INSTANCE(ROW)      ROW(44, hit_instance, uint, band_pixel, where_instances, words, scratch, never)
 // [ERROR_GROUPS x pixels] where errors are estimated: sums over the iterations of a group, of radiance in x, y and z,
 // of the bias of its luminance in w (include/error_groups.glsl).
-#define ERRORS(ROW)            ROW(45, errors, vec4, pixel, error_groups, records, carried, update)
+#define ERRORS(ROW)            ROW(45, errors, vec4, pixel, error_groups, records, summed, update)
 // Of the scene again, where lights are in a tree: of a triangle its lamp, branch << 1 | which
 // child, or NO_LAMP.
 #define LIGHT_TREE(ROW)        ROW(46, light_tree, LightBranch, light, uploaded, uint_texels, scratch, never)

@@ -103,7 +103,7 @@ TEST_F(CheckpointState, OfAnotherSizeOrWithAnImpossibleGridIsRefused) {
     std::size_t grid_at = sizeof(gpu::Status) - offsetof(gpu::Status, photons);  // what the status carries comes first
     for (const BufferRow& row : buffer_rows()) {
         if (row.binding == Binding::grid) break;
-        if (row.life == Life::carried) grid_at += rig.integrator.buffer(row.binding).bytes();
+        if (row.life != Life::scratch) grid_at += rig.integrator.buffer(row.binding).bytes();
     }
     const auto grid = rig.integrator.buffer(Binding::grid).download_value<gpu::Grid>();
     gpu::Grid wide = grid, hashed = grid, empty = grid, flat = grid, deep = grid, shifted = grid;
