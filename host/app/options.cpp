@@ -300,7 +300,7 @@ void declare(CLI::App& app, RenderOptions& options) {
         ->needs(frames);
     add_picture(app, options.settings);
     add_settings(app, options.settings, {Kind::parameter});
-    add_settings(app, options.settings, {Kind::channels});
+    add_settings(app, options.settings, {Kind::layers, Kind::channels});
     add_device(app, options.device);
     app.add_option("--stats", options.stats, "Times and counts of the render")->type_name("FILE.json");
     app.add_flag(
@@ -359,7 +359,7 @@ void declare(CLI::App& app, PlanOptions& options) {
         "Iterations that the job in this folder is to have more; scene and settings are the job's");
     add_picture(app, options.settings);
     add_settings(app, options.settings, {Kind::parameter});
-    add_settings(app, options.settings, {Kind::channels});
+    add_settings(app, options.settings, {Kind::layers, Kind::channels});
     add_device(app, options.device);
     app.add_flag("--quiet", options.quiet, "No progress, only warnings and errors");
 }

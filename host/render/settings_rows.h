@@ -21,7 +21,8 @@ enum class Kind {
     paths,      // likewise, and how many paths and how long: entrants may have their own
     view,       // likewise, and what it shows: that of another value is no reference for it
     parameter,  // of the estimators: vkcppm SCENE and race; entrants have their own
-    channels,   // what is told besides the picture: vkcppm SCENE
+    layers,     // what is told besides the picture: vkcppm SCENE and race
+    channels,   // likewise: vkcppm SCENE
     internal,   // set by the program alone
 };
 

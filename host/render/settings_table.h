@@ -86,7 +86,7 @@ SETTING(rings, std::uint32_t, 2, "rings", parameter, within(1u, std::uint32_t(MA
 SETTING(sectors, std::uint32_t, 6, "sectors", parameter, one_of(4u, 6u, 8u, 12u), count,
         "cppm, ftest: sectors of the disc: 4, 6, 8 or 12 (default: {})")
 
-SETTING(aovs, bool, false, "aovs", channels, any(), flag,
+SETTING(aovs, bool, false, "aovs", layers, any(), flag,
         "Add channels to the EXR: ppm.radius, ppm.photons, ppm.batch, ppm.rejections, ppm.statistic,\n"
         "ppm.iterations; Z, Albedo, N of the first surfaces; A, the share of eye paths that met one; and\n"
         "direct, caustic and rest, the layers of the picture")

@@ -185,7 +185,8 @@ TEST(SettingsTable, EveryCommandTakesTheKindsThatItShould) {
         EXPECT_EQ(is_taken({"s.gltf"}, words), row.kind != Kind::internal);
         EXPECT_EQ(is_taken({"plan", "s.gltf", "-o", "d"}, words),
                   row.kind != Kind::internal && (row.kind != Kind::bound || row.name == std::string("iterations")));
-        EXPECT_EQ(is_taken({"race", "s.gltf", "-o", "d"}, words), common || row.kind == Kind::parameter);
+        EXPECT_EQ(is_taken({"race", "s.gltf", "-o", "d"}, words),
+                  common || row.kind == Kind::parameter || row.kind == Kind::layers);
         EXPECT_EQ(is_taken({"reference", "s.gltf", "-o", "r.exr"}, words), common);
         words.push_back("");
         const std::string entrant = std::string("cppm:") + row.name + "=" + words[1];
