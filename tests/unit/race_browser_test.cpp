@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "app/race/data.h"
 #include "app/race/page.h"
 #include "app/race/pictures.h"
-#include "app/race/data.h"
 #include "support/files/browser.h"
 #include "support/files/files.h"
 #include "support/files/process.h"

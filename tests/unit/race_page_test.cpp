@@ -13,8 +13,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "app/race/pictures.h"
 #include "app/race/data.h"
+#include "app/race/pictures.h"
 #include "core/metrics.h"
 #include "render/sums.h"
 #include "unit/race_result.h"

@@ -15,8 +15,8 @@
 #include "app/provenance.h"
 #include "render/estimators.h"
 #include "render/settings_rows.h"
-#include "support/scenes/scenes.h"
 #include "support/files/temporary_folder.h"
+#include "support/scenes/scenes.h"
 #include "support/thrown.h"
 
 namespace vkcppm {
