@@ -71,10 +71,15 @@ def read(file):
                     for line in lines])
 
 
-def encoded(picture):
-    """The bytes of a PNG file."""
+def png_of(width, height, lines, level=9):
+    """The bytes of a PNG file of lines of RGB, each with its filter before it. level: of zlib."""
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0))
+            + chunk(b"IDAT", zlib.compress(lines, level)) + chunk(b"IEND", b""))
+
+
+def encoded(picture):
+    """The bytes of a PNG file."""
     lines = b"".join(b"\0" + bytes(value for pixel in row for value in pixel) for row in picture.rows)
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", picture.width, picture.height, 8, 2, 0, 0, 0))
-            + chunk(b"IDAT", zlib.compress(lines, 9)) + chunk(b"IEND", b""))
+    return png_of(picture.width, picture.height, lines)
