@@ -6,18 +6,19 @@
 
 namespace vkcppm {
 
-/// Renders the scene and writes the EXR, and the PNG and the statistics where asked for. After SIGINT or SIGTERM the
-/// iteration is finished and what there is is written. Throws Error(internal) after writing where the validation layer
-/// was asked for and had something to say.
+// "Interrupted" below: after SIGINT, SIGTERM or SIGHUP.
+
+/// Renders the scene and writes the EXR, and the PNG and the statistics where asked for. Interrupted, the iteration is
+/// finished and what there is is written. Throws Error(internal) after writing where the validation layer was asked for
+/// and had something to say.
 void execute(const RenderOptions& options);
 
 /// Renders the pilot of a job that many machines share and writes its folder, or extends one. A job that is there and
-/// is the same is left as it is, another one is refused. After SIGINT or SIGTERM nothing is written:
-/// Error(interrupted).
+/// is the same is left as it is, another one is refused. Interrupted, it writes nothing: Error(interrupted).
 void execute(const PlanOptions& options);
 
-/// Renders the slices of a shard that are not there, or are damaged, and writes each as it is done. After SIGINT or
-/// SIGTERM the slice that was begun is lost: Error(interrupted).
+/// Renders the slices of a shard that are not there, or are damaged, and writes each as it is done. Interrupted, it
+/// loses the slice that was begun: Error(interrupted).
 void execute(const ShardOptions& options);
 
 /// Adds up what there is of a job and writes the picture. Throws Error(no_input) where something is missing and none
@@ -27,12 +28,12 @@ void execute(const MergeOptions& options);
 /// Prints how far a job is.
 void execute(const StatusOptions& options);
 
-/// Races estimators and writes the folder: page, curves, settings, pictures. After SIGINT or SIGTERM the submission is
-/// finished and what there is is written. Throws Error(usage) where there is no reference for the scene.
+/// Races estimators and writes the folder: page, curves, settings, pictures. Interrupted, the submission is finished and
+/// what there is is written. Throws Error(usage) where there is no reference for the scene.
 void execute(const RaceOptions& options);
 
-/// Makes a reference, writes its EXR, and the statistics where asked for, and prints what is known of its error. After
-/// SIGINT or SIGTERM it ends as soon as an error can be told.
+/// Makes a reference, writes its EXR, and the statistics where asked for, and prints what is known of its error.
+/// Interrupted, it ends as soon as an error can be told.
 void execute(const ReferenceOptions& options);
 
 /// Prints the measures of study/measures.h.

@@ -24,6 +24,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::uint64_t most_slices = 1u << 20;
+
 fs::path job_file(const fs::path& folder) { return folder / "job.json"; }
 fs::path pilot_file(const Job& job) { return job.folder / "pilot.ckpt"; }
 
@@ -206,11 +208,14 @@ Job job_of(const Json& json, const fs::path& folder) {
         job.identity.emplace_back(name, value.get<std::string>());
     }
     settings.iterations = job.ends.empty() ? 0 : job.iterations();
-    const auto pixels = settings.size->pixels();
     const bool in_order = std::ranges::is_sorted(job.ends) && !job.ends.empty() && job.ends.front() > job.pilot;
-    if (!in_order || job.pilot < least_pilot || job.slice == 0 || job.iterations() > max_iterations || pixels == 0 ||
-        pixels > std::size_t(1) << 31 || !(job.scale > 0.0)) {
+    if (!in_order || job.pilot < least_pilot || job.slice == 0 || !(job.scale > 0.0))
         throw Error(ExitCode::bad_scene, "its numbers are out of range");
+    try {
+        check_settings(settings);
+        check_cuts(job);
+    } catch (const Error& error) {
+        throw Error(ExitCode::bad_scene, error.what());
     }
     return job;
 }
@@ -228,6 +233,18 @@ std::vector<Cut> cuts_of(const Job& job) {
         }
     }
     return cuts;
+}
+
+void check_cuts(const Job& job) {
+    std::uint64_t slices = 0;
+    std::uint32_t first = job.pilot;
+    for (const std::uint32_t end : job.ends) {
+        slices += (std::uint64_t(end - first) + job.slice - 1) / job.slice;
+        first = end;
+    }
+    if (slices <= most_slices) return;
+    throw Error(ExitCode::usage, fmt::format("--slice {}: {} iterations are {} slices; the limit is {}", job.slice,
+                                             job.iterations(), slices, most_slices));
 }
 
 std::optional<std::uint32_t> shard_number(const Cut& cut, std::uint32_t shards) {

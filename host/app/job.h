@@ -45,6 +45,9 @@ struct Job {
 /// All of them in order, the pilot first: slices of `slice` iterations, and shorter ones where it once ended.
 std::vector<Cut> cuts_of(const Job& job);
 
+/// Throws Error(usage) where the job is of more slices than a folder should hold.
+void check_cuts(const Job& job);
+
 /// The shard of so many, from 1 on, that a slice is of: they are dealt out in turn. None of the pilot.
 std::optional<std::uint32_t> shard_number(const Cut& cut, std::uint32_t shards);
 

@@ -31,6 +31,7 @@ using Words = std::vector<std::string>;
 
 constexpr double race_seconds = 60.0;        // of each entrant with each seed, where nothing else bounds them
 constexpr std::uint32_t most_seeds = 10000;  // of a race: more is taken for a slip
+constexpr std::uint32_t most_shards = 1u << 20;
 constexpr const char* race_estimators = "cppm,sppm,appm";
 
 constexpr const char* footer = R"(Exit codes:
@@ -366,6 +367,8 @@ void declare(CLI::App& app, PlanOptions& options) {
 
 void finish(const CLI::App& app, const Words& words, PlanOptions& options) {
     options.words = words;
+    if (options.shards && (*options.shards < 1 || *options.shards > most_shards))
+        refuse("--shards", std::to_string(*options.shards), fmt::format("a number from 1 to {}", most_shards));
     if (!options.extend) {
         if (app.count("SCENE") == 0) throw Error(ExitCode::usage, "SCENE is required (see vkcppm plan --help)");
         return;

@@ -71,7 +71,7 @@ struct RenderOptions {
 /// vkcppm reference SCENE ...
 struct ReferenceOptions {
     SceneOptions scene;
-    ReferenceSettings settings;                  // ranges unchecked: make_reference does that
+    ReferenceSettings settings;                  // ranges unchecked: resolve_reference does that
     std::filesystem::path output;                // EXR
     bool half = false;                           // half floats
     std::optional<std::filesystem::path> stats;  // JSON

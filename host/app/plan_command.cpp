@@ -38,9 +38,8 @@ std::uint32_t slice_of(const PlanOptions& options) {
     return options.slice.value_or(std::max(least_slice, (options.settings.iterations - pilot_of(options)) / slices));
 }
 
-/// Throws Error(usage) where the plan cannot be cut so.
-void check_plan(const PlanOptions& options) {
-    constexpr std::uint32_t most_shards = 1u << 20;
+/// How the job is cut. Throws Error(usage) where it cannot be cut so.
+void cut(Job& job, const PlanOptions& options) {
     const std::uint32_t pilot = pilot_of(options);
     if (pilot < least_pilot) throw Error(ExitCode::usage, fmt::format("--pilot {} is below {}", pilot, least_pilot));
     if (options.settings.iterations <= pilot) {
@@ -48,8 +47,10 @@ void check_plan(const PlanOptions& options) {
                                                  options.settings.iterations, pilot));
     }
     if (options.slice == 0u) throw Error(ExitCode::usage, "--slice 0 is below 1");
-    if (options.shards && (*options.shards < 1 || *options.shards > most_shards))
-        throw Error(ExitCode::usage, fmt::format("--shards {} is outside 1..{}", *options.shards, most_shards));
+    job.pilot = pilot;
+    job.slice = slice_of(options);
+    job.ends = {options.settings.iterations};
+    check_cuts(job);
 }
 
 /// Iterations to their end, for people.
@@ -79,6 +80,7 @@ void extend(const PlanOptions& options) {
                     fmt::format("--extend {} is outside 1..{}", *options.extend, max_iterations - job.iterations()));
     }
     job.ends.push_back(job.iterations() + *options.extend);
+    check_cuts(job);
     write_job(job);
     if (!options.quiet) print_message(fmt::format("{}: {}", options.job.string(), told(job)));
 }
@@ -94,7 +96,8 @@ void make_folder(const fs::path& folder) {
 void execute(const PlanOptions& options) {
     catch_interrupts();
     if (options.extend) return extend(options);
-    check_plan(options);
+    Job job;
+    cut(job, options);
     make_folder(options.job);
     const std::vector<Output> outputs = {{"-o", options.job / "job.json", ".json"}};
     check_outputs({options.scene.file, options.scene.environment}, outputs, false);
@@ -110,15 +113,11 @@ void execute(const PlanOptions& options) {
     Device device(options.device);
     const PipelineCache cache(device, options.device.cache);
     SliceRenderer renderer(scene, settings, device);
-    Job job;
     job.folder = options.job;
     job.plan = options;
     job.plan.settings = renderer.settings();
     job.plan.folder = fs::relative(fs::current_path(), options.job).string();
     job.scale = renderer.scale();
-    job.pilot = pilot_of(options);
-    job.slice = slice_of(options);
-    job.ends = {settings.iterations};
     job.scene_hash = scene.hash;
 
     ProgressLine line(stderr, ::isatty(STDERR_FILENO) == 1, std::nullopt);

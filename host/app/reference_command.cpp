@@ -21,9 +21,10 @@
 namespace vkcppm {
 namespace {
 
-Reference refine_with_progress(const Scene& scene, const ReferenceOptions& options, Device& device) {
-    ProgressLine line(stderr, ::isatty(STDERR_FILENO) == 1, options.settings.render.seconds);
-    return make_reference(scene, options.settings, device, [&](const ReferenceProgress& progress) {
+Reference refine_with_progress(const Scene& scene, const ReferenceSettings& settings, const ReferenceOptions& options,
+                               Device& device) {
+    ProgressLine line(stderr, ::isatty(STDERR_FILENO) == 1, settings.render.seconds);
+    return make_reference(scene, settings, device, [&](const ReferenceProgress& progress) {
         if (!options.quiet) {
             line.update(progress.wall_seconds,
                         fmt::format("{}: {} paths a pixel, {} iterations of caustics, relMSE about {:.2g}",
@@ -43,10 +44,11 @@ void execute(const ReferenceOptions& options) {
     const Scene scene = load_scene(options.scene);
     check_outputs({scene.inputs.begin(), scene.inputs.end()}, outputs, true);
     tell_warnings(scene, options.scene);
-    resolve_reference(options.settings, scene);  // a bad value is told before the device is asked for
+    // A bad value is told before the device is asked for.
+    const ReferenceSettings settings = resolve_reference(options.settings, scene);
     Device device(options.device);
     const PipelineCache cache(device, options.device.cache);
-    const Reference reference = refine_with_progress(scene, options, device);
+    const Reference reference = refine_with_progress(scene, settings, options, device);
     print_warnings(reference.warnings);
     const ExrChannels channels = reference_channels(reference);
     if (const std::size_t count = options.half ? beyond_halves(channels) : 0) {

@@ -160,9 +160,9 @@ void write_snapshot(const RenderOptions& options, const Scene& scene, const Rend
     }
 }
 
-Rendering render_with_progress(const Scene& scene, const RenderOptions& options, const Measuring* measuring,
-                               const Checkpointing& checkpointing, Device& device) {
-    ProgressLine line(stderr, ::isatty(STDERR_FILENO) == 1, options.settings.seconds);
+Rendering render_with_progress(const Scene& scene, const Settings& settings, const RenderOptions& options,
+                               const Measuring* measuring, const Checkpointing& checkpointing, Device& device) {
+    ProgressLine line(stderr, ::isatty(STDERR_FILENO) == 1, settings.seconds);
     std::optional<LiveView> view;
     if (options.live) view.emplace(*options.live, options.output.string());
     Snapshots snapshots;
@@ -178,7 +178,7 @@ Rendering render_with_progress(const Scene& scene, const RenderOptions& options,
         };
     }
     const Rendering rendering = render(
-        scene, options.settings, device,
+        scene, settings, device,
         [&](const Progress& progress) {
             if (!options.quiet) line.update(progress);
             return !interrupted();
@@ -291,7 +291,7 @@ void render_frames(const RenderOptions& options) {
         skipped.tell(options.quiet);
         if (!options.quiet)
             print_message(fmt::format("frame {} of {}..{}, at {:.6g} s", i, first, last, frame.scene.at));
-        const Rendering rendering = render_with_progress(scene, frame, nullptr, {}, *device);
+        const Rendering rendering = render_with_progress(scene, settings, frame, nullptr, {}, *device);
         if (interrupted()) {
             print_message(fmt::format("interrupted in frame {}, which is not written", i));
             break;
@@ -350,7 +350,7 @@ void execute(const RenderOptions& options) {
         };
     }
     const Rendering rendering =
-        render_with_progress(scene, options, measuring ? &*measuring : nullptr, checkpointing, device);
+        render_with_progress(scene, settings, options, measuring ? &*measuring : nullptr, checkpointing, device);
     tell_and_write(options, scene, rendering);
     if (keeper) {
         keeper->require_kept();

@@ -1,5 +1,5 @@
 #pragma once
-// What this process has used so far.
+// What this process has used so far, and what the machine that it runs on has.
 
 #include <cstdint>
 #include <string>

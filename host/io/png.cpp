@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 #include <csetjmp>
+#include <new>
+#include <string>
 #include <vector>
 
 #include <png.h>
@@ -43,8 +45,15 @@ std::string encode_png(const Bitmap& bitmap) {
 
 namespace {
 
+/// No exception may pass through libpng, which is C.
 void append(png_structp writer, png_bytep bytes, std::size_t count) {
-    static_cast<std::string*>(png_get_io_ptr(writer))->append(reinterpret_cast<const char*>(bytes), count);
+    bool failed = false;
+    try {
+        static_cast<std::string*>(png_get_io_ptr(writer))->append(reinterpret_cast<const char*>(bytes), count);
+    } catch (const std::bad_alloc&) {
+        failed = true;
+    }
+    if (failed) png_error(writer, "out of memory");
 }
 
 void flush(png_structp) {}

@@ -267,6 +267,7 @@ void Integrator::scan(std::uint32_t i, std::uint32_t first, std::uint32_t count)
 /// Begins to record launches, those of no band and of the first.
 void Integrator::begin() {
     commands_.begin();
+    launched_.clear();  // what was recorded last may never have been submitted
     band_ = 0;
 }
 

@@ -6,10 +6,8 @@
 #include <fmt/format.h>
 
 #include "core/process.h"
-#include "flat/flatten.h"
 #include "render/integrator.h"
 #include "render/light_paths.h"
-#include "render/memory.h"
 #include "render/submission.h"
 #include "vk/device.h"
 
@@ -49,16 +47,15 @@ CurvePoint measure(Integrator& integrator, const Image& reference) {
 
 }  // namespace
 
-Rendering render(const Scene& scene, const Settings& wanted, Device& device, const KeepGoing& keep_going,
+Rendering render(const Scene& scene, const Settings& resolved, Device& device, const KeepGoing& keep_going,
                  const Measuring* measuring, const Checkpointing& checkpointing, const OnPassHash& on_hash,
                  const Snapshots& snapshots, const Target* target) {
-    assert(!target || wanted.error);
+    assert(!target || resolved.error);
     Rendering result;
     const double setup = wall_now();
-    result.settings = resolve_settings(wanted, scene);
+    result.settings = resolved;
     const Settings& settings = result.settings;
-    check_memory(scene, settings, device);
-    const SceneOnDevice on_device(device, flatten(scene));
+    const SceneOnDevice on_device = put_on_device(scene, settings, device);
     result.settings.photons = light_paths(on_device, camera_of(settings, scene), settings);
     Integrator integrator(on_device, camera_of(settings, scene), settings);
     if (checkpointing.from) {

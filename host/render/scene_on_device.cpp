@@ -14,6 +14,7 @@
 #include "flat/bounds.h"
 #include "flat/features.h"
 #include "render/kernel_choice.h"
+#include "render/memory.h"
 
 namespace vkcppm {
 namespace {
@@ -75,6 +76,11 @@ template <typename T> void SceneOnDevice::put(Binding binding, const std::vector
 
 void SceneOnDevice::lend(Buffers& buffers) const {
     for (const auto& [binding, buffer] : buffers_) buffers.lend(binding, buffer);
+}
+
+SceneOnDevice put_on_device(const Scene& scene, const Settings& settings, Device& device) {
+    check_memory(scene, settings, device);
+    return SceneOnDevice(device, flatten(scene));
 }
 
 Specialization scene_specialization(const FlatScene& scene, std::uint32_t features) {

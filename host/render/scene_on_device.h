@@ -37,6 +37,10 @@ private:
     std::map<Binding, Buffer> buffers_;
 };
 
+/// The scene, flattened and uploaded. Throws as check_memory(), which is asked first: `settings`, which must be
+/// resolved, are of what is to be rendered of it.
+SceneOnDevice put_on_device(const Scene& scene, const Settings& settings, Device& device);
+
 /// SPEC_* of every kernel that traces rays. features: FEATURE_*.
 Specialization scene_specialization(const FlatScene& scene, std::uint32_t features);
 

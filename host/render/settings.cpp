@@ -84,11 +84,9 @@ Extent default_size(const Camera& camera) {
 }
 
 /// A lens has an opening and a distance at which it is sharp, or neither.
-void check_lens(const Settings& settings, const Camera& camera) {
+void check_lens(const Settings& settings) {
     if (settings.fstop && settings.aperture > 0.0)
         throw Error(ExitCode::usage, "--fstop and --aperture exclude one another");
-    if (settings.fstop && camera.ymag)
-        throw Error(ExitCode::usage, "--fstop needs a perspective camera; --aperture tells the diameter");
     const char* opening = settings.fstop ? "--fstop" : "--aperture";
     const double value = settings.fstop.value_or(settings.aperture);
     if (value > 0.0 && !settings.focus_distance)
@@ -110,18 +108,24 @@ void check_cells(const EstimatorRow& estimator, std::uint32_t sectors) {
 
 }  // namespace
 
-Settings resolve_settings(const Settings& settings, const Scene& scene) {
+void check_settings(const Settings& settings) {
     setting::for_each([&](const auto& row) {
         if (const auto* value = setting::given(settings.*row.member))
             check(fmt::format("--{}", row.name), *value, row.values);
     });
     check_cells(find_estimator(settings.estimator), settings.sectors);
+    check_lens(settings);
+}
 
+Settings resolve_settings(const Settings& settings, const Scene& scene) {
+    check_settings(settings);
     Settings resolved = settings;
-    const std::size_t camera = find_camera(settings.camera, scene);
-    resolved.camera = std::to_string(camera);
-    if (!settings.size) resolved.size = default_size(scene.cameras.at(camera));
-    check_lens(settings, scene.cameras.at(camera));
+    const std::size_t index = find_camera(settings.camera, scene);
+    const Camera& camera = scene.cameras.at(index);
+    resolved.camera = std::to_string(index);
+    if (!settings.size) resolved.size = default_size(camera);
+    if (settings.fstop && camera.ymag)
+        throw Error(ExitCode::usage, "--fstop needs a perspective camera; --aperture tells the diameter");
     return resolved;
 }
 

@@ -12,8 +12,12 @@ namespace vkcppm {
 
 struct FlatScene;
 
-/// Throws Error(usage) where a setting is out of range, with its name, value and limit.
-/// `scene` resolves what depends on it: the size of the picture and the camera.
+/// Throws Error(usage) where a setting is out of range, with its name, value and limit, or where one does not go with
+/// another.
+void check_settings(const Settings& settings);
+
+/// Checks them, and resolves what depends on the scene: the size of the picture and the camera. Once, where a command
+/// begins: a camera may have the index of another as its name.
 Settings resolve_settings(const Settings& settings, const Scene& scene);
 
 /// The camera of resolved settings, which hold its index.

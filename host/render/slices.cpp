@@ -3,20 +3,17 @@
 #include <cassert>
 
 #include "core/process.h"
-#include "flat/flatten.h"
 #include "render/light_paths.h"
-#include "render/memory.h"
 #include "render/schedule.h"
 #include "render/submission.h"
 
 namespace vkcppm {
 
-SliceRenderer::SliceRenderer(const Scene& scene, const Settings& settings, Device& device) : settings_(settings) {
-    check_memory(scene, settings_, device);
-    on_device_.emplace(device, flatten(scene));
+SliceRenderer::SliceRenderer(const Scene& scene, const Settings& settings, Device& device)
+    : settings_(settings), on_device_(put_on_device(scene, settings, device)) {
     const Camera& camera = camera_of(settings_, scene);
-    settings_.photons = light_paths(*on_device_, camera, settings_);
-    integrator_.emplace(*on_device_, camera, settings_);
+    settings_.photons = light_paths(on_device_, camera, settings_);
+    integrator_.emplace(on_device_, camera, settings_);
 }
 
 /// So many iterations from the one on that is due.

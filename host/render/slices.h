@@ -64,7 +64,7 @@ private:
     std::optional<Slice> run(std::uint32_t count, const KeepGoing& keep_going);
 
     Settings settings_;
-    std::optional<SceneOnDevice> on_device_;
+    SceneOnDevice on_device_;
     std::optional<Integrator> integrator_;
 };
 

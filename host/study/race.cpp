@@ -9,10 +9,10 @@
 
 #include "core/error.h"
 #include "core/process.h"
-#include "flat/flatten.h"
 #include "render/integrator.h"
 #include "render/light_paths.h"
 #include "render/render.h"
+#include "render/scene_on_device.h"
 #include "render/submission.h"
 #include "vk/device.h"
 
@@ -152,7 +152,8 @@ RaceResult run_race(const Scene& scene, const RaceSettings& race, const Image& r
     const auto sppm = std::ranges::find_if(race.entrants, is_sppm);
     if (sppm != race.entrants.end()) result.baseline = std::size_t(sppm - race.entrants.begin());
 
-    const SceneOnDevice on_device(device, flatten(scene));
+    // Entrants differ by their estimators alone, which take about as much.
+    const SceneOnDevice on_device = put_on_device(scene, race.entrants.front().settings, device);
     // One number for all who have none of their own, counted for the first of them.
     std::optional<std::uint32_t> photons;
     for (RaceRun& run : result.runs) {

@@ -11,7 +11,6 @@
 #include "core/metrics.h"
 #include "core/process.h"
 #include "core/srgb.h"
-#include "flat/flatten.h"
 #include "flat/material.h"
 #include "render/integrator.h"
 #include "render/path_tracer.h"
@@ -288,14 +287,14 @@ ReferenceSettings resolve_reference(const ReferenceSettings& wanted, const Scene
     return settings;
 }
 
-Reference make_reference(const Scene& scene, const ReferenceSettings& wanted, Device& device,
+Reference make_reference(const Scene& scene, const ReferenceSettings& resolved, Device& device,
                          const KeepRefining& keep_refining) {
     const double setup = wall_now();
     Reference result;
-    result.settings = resolve_reference(wanted, scene);
+    result.settings = resolved;
     const Settings& settings = result.settings.render;
     const Camera& camera = camera_of(settings, scene);
-    const SceneOnDevice on_device(device, flatten(scene));
+    const SceneOnDevice on_device = put_on_device(scene, settings, device);
     Paths paths(on_device, camera, result.settings);
     std::unique_ptr<Caustics> caustics;
     if (splits_near_lamps(on_device.flat()) || std::ranges::any_of(traits_of(scene), &MaterialTraits::smooth)) {

@@ -76,8 +76,8 @@ using KeepRefining = std::function<bool(const ReferenceProgress&)>;
 /// `settings` with defaults resolved. Throws Error(usage) with option, value and range where one is out of it.
 ReferenceSettings resolve_reference(const ReferenceSettings& settings, const Scene& scene);
 
-/// Throws Error as render() does. Without `seconds` the same settings on the same device give the same bits; with them
-/// the numbers of samples and iterations that were done do, given as bounds.
+/// `settings` must be resolved. Throws Error as render() does. Without `seconds` the same settings on the same device
+/// give the same bits; with them the numbers of samples and iterations that were done do, given as bounds.
 Reference make_reference(const Scene& scene, const ReferenceSettings& settings, Device& device,
                          const KeepRefining& keep_refining);
 

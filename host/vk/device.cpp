@@ -1,6 +1,7 @@
 #include "vk/device.h"
 
 #include <algorithm>
+#include <cassert>
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
@@ -426,6 +427,7 @@ bool Device::reuse_pipelines(std::span<const std::byte> data) {
     VkPipelineCacheHeaderVersionOne header{};
     if (data.size() < sizeof(header)) return false;
     std::memcpy(&header, data.data(), sizeof(header));
+    assert(impl_->made.empty());
     const auto properties = impl_->physical->getProperties();
     const bool ours = header.headerSize == sizeof(header) &&
                       header.headerVersion == VK_PIPELINE_CACHE_HEADER_VERSION_ONE &&
@@ -434,7 +436,6 @@ bool Device::reuse_pipelines(std::span<const std::byte> data) {
     if (!ours) return false;
     guarded("reading pipelines of an earlier run", [&] {
         impl_->pipelines.emplace(*impl_->device, vk::PipelineCacheCreateInfo({}, data.size(), data.data()));
-        impl_->made.clear();
     });
     return true;
 }

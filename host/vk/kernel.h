@@ -75,7 +75,7 @@ public:
     /// Launches that follow are with the first set of buffers, until use() names another.
     void begin();
     void use(std::uint32_t set);
-    /// At least `invocations` invocations in whole work groups, folded into y beyond 65,535 groups.
+    /// At least `invocations` invocations in whole work groups, folded into y beyond the device's limit of x.
     void launch(const Kernel& kernel, std::uint64_t invocations, const gpu::Launch& push);
     /// As many work groups as three words of `groups` from byte `offset` say when it is due, none where the first is 0.
     void launch_indirect(const Kernel& kernel, const Buffer& groups, std::uint64_t offset, const gpu::Launch& push);

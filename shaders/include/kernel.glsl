@@ -35,7 +35,7 @@ layout(push_constant, scalar) uniform LaunchBlock { Launch launch; };
 PARAMS(UNIFORM)
 STATUS(VALUE)
 
-// Index of this work group; the host folds dispatches of more than 65,535 groups into y.
+// Index of this work group; the host folds dispatches beyond the device's limit of groups in x into y.
 uint work_group() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
 
 uint invocation() { return work_group() * gl_WorkGroupSize.x + gl_LocalInvocationIndex; }

@@ -98,7 +98,8 @@ void main() {
         return;
     }
     if (search.kept == params.knn) {
-        // What was counted with the largest radius says nothing about this one.
+        // What was counted with the largest radius says nothing about this one. Of what this invocation has stored
+        // above, which texels need not show, nothing is used.
         PixelState state = pixels_at(pixel);
         state.radius2 = max(search.largest, RADIUS2_MIN);
         state.radius2_low = 0.0;

@@ -407,7 +407,7 @@ RECORD(HitSurface)
 #define PATH_CAUSTIC 0x8000u    // a photon that left its light by way of a delta lobe, or of a surface near a lamp; an
                                 // eye path whose last lobe was a delta and one before was not
 #define PATH_MEDIUM_SHIFT 16u
-#define PATH_NO_MEDIUM 0xffffu  // also the largest number of materials
+#define PATH_NO_MEDIUM 0xffffu  // so a scene has fewer materials
 
 #define MOST_MET 0x100000u      // surfaces that a path meets, those that it passes straight included; there it ends
 

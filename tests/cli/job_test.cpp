@@ -3,6 +3,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <random>
 #include <set>
@@ -278,7 +279,8 @@ TEST_F(ManyMachines, WhatCannotBeDoneIsRefusedBeforeAnyTimeIsSpent) {
     refused({"--iterations", "16"}, {"--iterations 16", "nothing is left to share"});
     refused({"--pilot", "7"}, {"--pilot 7 is below 8"});
     refused({"--slice", "0"}, {"--slice 0"});
-    refused({"--shards", "0"}, {"--shards 0"});
+    refused({"--shards", "0"}, {"--shards", "'0'"});
+    refused({"--slice", "1", "--iterations", "1073741823"}, {"--slice 1", "1040187392 slices"});
     for (const char* wrong : {"0/3", "4/3", "1", "1/", "/2", "1/2x", "-1/2"}) {
         expect_failure(run({"render-shard", "job", "--shard", wrong}), 2, {"--shard", "K/N"}, wrong);
     }
@@ -288,6 +290,39 @@ TEST_F(ManyMachines, WhatCannotBeDoneIsRefusedBeforeAnyTimeIsSpent) {
     plan("job");
     expect_failure(merge("job", "job/slice_0001.sums"), 2, {"-o"}, "an input");
     expect_failure(merge("job", "job/job.json"), 2, {"-o"}, "the job");
+}
+
+// What a plan would not have written is believed as little as any other file.
+TEST_F(ManyMachines, AForgedJobIsRefused) {
+    plan("job", {"--shards", "2"});
+    const std::string good = bytes("job/job.json");
+    const auto refused = [&](const std::function<void(Json&)>& forge, int code, const Words& told) {
+        Json json = Json::parse(good);
+        forge(json);
+        write_bytes(folder_ / "job/job.json", json.dump());
+        expect_failure(shard("job", "1/1"), code, told, told.front());
+        expect_failure(merge("job", "none.exr"), code, told, told.front());
+        expect_failure(run({"status", "job"}), code, told, told.front());
+    };
+    const auto with = [](Words words) {
+        return [words](Json& json) {
+            for (const std::string& word : words) json["command"].push_back(word);
+        };
+    };
+    refused(with({"--rings", "200"}), 65, {"--rings 200", "job.json"});
+    refused(with({"--sectors", "5000"}), 65, {"--sectors 5000"});
+    refused(with({"--aperture", "0.1"}), 65, {"--aperture 0.1", "--focus-distance"});
+    refused([](Json& json) { json["size"] = {0, 24}; }, 65, {"--size: width 0"});
+    refused([](Json& json) { json["photons"] = 1u << 31; }, 65, {"--photons 2147483648"});
+    refused([](Json& json) { json["ends"] = {1'000'000'000}; }, 65, {"--slice 4", "the limit is 1048576"});
+    refused([](Json& json) { json["slice"] = 0; }, 65, {"out of range"});
+    refused(
+        [](Json& json) {
+            for (Json& word : json["command"]) word = word == "2" ? "0" : word;
+        },
+        2, {"--shards"});
+    write_bytes(folder_ / "job/job.json", good);
+    expect_done(shard("job", "1/1"));
 }
 
 }  // namespace

@@ -71,8 +71,8 @@ TEST_P(ClosedForm, MeanRadianceOfEveryRegion) {
     const nlohmann::json expected = expectation_of(name);
     const Scene scene = load_gltf(scenes / expected["scene"].get<std::string>());
     EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.front();
-    const Rendering rendering =
-        render(scene, settings_of(expected, direct), device(), [](const Progress&) { return true; });
+    const Settings settings = resolve_settings(settings_of(expected, direct), scene);
+    const Rendering rendering = render(scene, settings, device(), [](const Progress&) { return true; });
     EXPECT_TRUE(rendering.warnings.empty()) << rendering.warnings.front();
 
     expect_regions(rendering.image, expected);

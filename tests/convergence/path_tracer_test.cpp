@@ -59,7 +59,8 @@ Reference refer(const Scene& scene, const Settings& settings, std::uint32_t iter
     wanted.render.iterations = iterations;
     wanted.render.photons = photons;
     wanted.samples = 128;
-    return make_reference(scene, wanted, plain_device(), [](const ReferenceProgress&) { return true; });
+    return make_reference(scene, resolve_reference(wanted, scene), plain_device(),
+                          [](const ReferenceProgress&) { return true; });
 }
 
 TEST(PathTracerLamps, OfManyAgreeWithDoublePrecision) {

@@ -23,7 +23,8 @@ Rendering tiny_render(Device& on) {
     settings.size = Extent{8, 8};
     settings.photons = 256;
     settings.iterations = 2;
-    return render(room(), settings, on, [](const Progress&) { return true; });
+    const Scene scene = room();
+    return render(scene, resolve_settings(settings, scene), on, [](const Progress&) { return true; });
 }
 
 /// Whether both pictures have the same bits.

@@ -181,7 +181,9 @@ TEST_F(HardPhotons, OnWideGround) {
         Settings settings = settings_of({32, 32}, 65536);
         settings.direct = c.direct;
         settings.iterations = 16;
-        const Rendering got = render(ground(c.half), settings, plain_device(), [](const Progress&) { return true; });
+        const Scene scene = ground(c.half);
+        const Rendering got =
+            render(scene, resolve_settings(settings, scene), plain_device(), [](const Progress&) { return true; });
         EXPECT_EQ(!got.warnings.empty(), c.says) << c.half << " m, " << c.direct;
         for (const std::string& line : got.warnings) {
             EXPECT_NE(line.find("photons an iteration do not suffice"), std::string::npos) << line;

@@ -15,6 +15,7 @@ namespace vkcppm {
 /// - glass that alpha makes vanish somewhere;
 /// - a light inside solid glass;
 /// - no light at all;
+/// - a mesh that is so small beside the scene that the light on it is blurred over all of it;
 /// - light of an intensity that no common source has in W/sr, W/m^2 or W m^-2 sr^-1.
 /// Takes n log n of the triangles of glass and of emitters among it. Whether a light is inside is asked for as many
 /// lights as a fixed number of solid angles allows, in order.

@@ -21,9 +21,9 @@ std::string_view name_of(PunctualUnits units);
 /// By what the intensities of a file are divided to be radiometric; a warning says where the file decided it.
 double lumens_per_watt(const GltfFile& file, PunctualUnits units, Warnings& warnings);
 
-/// The light of a node, in the world; none where it has none or, with a warning, points nowhere.
-/// Throws Error(bad_scene) where its intensity or its cone is out of range. Its
-/// intensity is divided by `per_watt`.
+/// The light of a node, in the world, its intensity divided by `per_watt`. None where the node has none or, with a
+/// warning, where the light points nowhere or its intensity is negative. A cone that is no cone becomes the nearest that
+/// is, with a warning.
 std::optional<PunctualLight> read_light(const GltfFile& file, const tinygltf::Model& model, const PlacedNode& placed,
                                         double per_watt, Warnings& warnings);
 
