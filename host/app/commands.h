@@ -28,8 +28,8 @@ void execute(const MergeOptions& options);
 /// Prints how far a job is.
 void execute(const StatusOptions& options);
 
-/// Races estimators and writes the folder: page, curves, settings, pictures. Interrupted, the submission is finished and
-/// what there is is written. Throws Error(usage) where there is no reference for the scene.
+/// Races estimators and writes the folder: page, curves, settings, pictures. Interrupted, the submission is finished
+/// and what there is is written. Throws Error(usage) where there is no reference for the scene.
 void execute(const RaceOptions& options);
 
 /// Makes a reference, writes its EXR, and the statistics where asked for, and prints what is known of its error.

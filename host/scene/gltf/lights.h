@@ -22,8 +22,8 @@ std::string_view name_of(PunctualUnits units);
 double lumens_per_watt(const GltfFile& file, PunctualUnits units, Warnings& warnings);
 
 /// The light of a node, in the world, its intensity divided by `per_watt`. None where the node has none or, with a
-/// warning, where the light points nowhere or its intensity is negative. A cone that is no cone becomes the nearest that
-/// is, with a warning.
+/// warning, where the light points nowhere or its intensity is negative. A cone that is no cone becomes the nearest
+/// that is, with a warning.
 std::optional<PunctualLight> read_light(const GltfFile& file, const tinygltf::Model& model, const PlacedNode& placed,
                                         double per_watt, Warnings& warnings);
 

@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "support/drivers.h"
+
 namespace vkcppm::test {
 namespace {
 
@@ -25,6 +27,8 @@ Device& plain_device() {
 }
 
 void GpuTest::SetUp() {
+    if (device().policy().texels_as_storage && faults_where_texels_are_storage(device().info().driver))
+        GTEST_SKIP() << why_storage_faults;
     ASSERT_EQ(device().validating(), validates());
     messages_before_ = device().validation_messages().size();
 }
