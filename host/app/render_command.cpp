@@ -165,26 +165,27 @@ Rendering render_with_progress(const Scene& scene, const Settings& settings, con
     ProgressLine line(stderr, ::isatty(STDERR_FILENO) == 1, settings.seconds);
     std::optional<LiveView> view;
     if (options.live) view.emplace(*options.live, options.output.string());
-    Snapshots snapshots;
+    RenderHooks hooks;
+    hooks.keep_going = [&](const Progress& progress) {
+        if (!options.quiet) line.update(progress);
+        return !interrupted();
+    };
+    hooks.measuring = measuring;
+    hooks.checkpointing = checkpointing;
+    if (options.hash) hooks.on_hash = print_hash;
+    if (options.target) hooks.target = &*options.target;
     double written_at = checkpointing.from ? checkpointing.from->report.wall_seconds : 0.0;
     if (options.snapshot || view) {
-        snapshots.every = options.snapshot.value_or(live_every);
-        if (view) snapshots.every = std::min(snapshots.every, live_every);
-        snapshots.show = [&](const Rendering& so_far) {
+        hooks.snapshots.every = options.snapshot.value_or(live_every);
+        if (view) hooks.snapshots.every = std::min(hooks.snapshots.every, live_every);
+        hooks.snapshots.show = [&](const Rendering& so_far) {
             if (view) view->show(so_far.image);
             if (!options.snapshot || so_far.report.wall_seconds - written_at < *options.snapshot) return;
             written_at = so_far.report.wall_seconds;
             write_snapshot(options, scene, so_far);
         };
     }
-    const Rendering rendering = render(
-        scene, settings, device,
-        [&](const Progress& progress) {
-            if (!options.quiet) line.update(progress);
-            return !interrupted();
-        },
-        measuring, checkpointing, options.hash ? print_hash : OnPassHash(), snapshots,
-        options.target ? &*options.target : nullptr);
+    const Rendering rendering = render(scene, settings, device, hooks);
     if (view) view->show(rendering.image);
     if (!options.quiet) {
         const Report& report = rendering.report;

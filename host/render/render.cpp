@@ -41,133 +41,173 @@ bool is_measured(const Measuring* measuring, std::uint32_t done) {
     return measuring && (measuring->stop_at || is_snapshot(done));
 }
 
-CurvePoint measure(Integrator& integrator, const Image& reference) {
-    return {integrator.completed(), integrator.seconds(), compare(integrator.resolve(), reference)};
-}
+/// A render on its way.
+class Run {
+public:
+    Run(const Scene& scene, const Settings& settings, Device& device, const RenderHooks& hooks)
+        : hooks_(hooks),
+          set_up_from_(wall_now()),
+          settings_(settings),
+          on_device_(put_on_device(scene, settings, device)),
+          integrator_(on_device_, camera_of(settings, scene), with_light_paths(scene)) {
+        if (const Checkpoint* from = hooks_.checkpointing.from) {
+            result_.report = from->report;
+            result_.curve = from->curve;
+            integrator_.restore(result_.report, from->state);
+        }
+        result_.settings = settings_;
+        result_.report.setup_seconds = wall_now() - set_up_from_;
+        watch_ = Stopwatch(result_.report.wall_seconds, result_.report.cpu_seconds);
+        kept_at_ = shown_at_ = watch_.wall();
+        // The checkpoint may be of a render that ended so.
+        if (hooks_.checkpointing.from && hooks_.measuring) watch_.off_the_clock([&] { measure(); });
+        look();
+    }
+
+    Rendering finish() && {
+        bool going = true;
+        while (going && !ended() && submit()) going = after_submission();
+        book();
+        if (hooks_.checkpointing.keep && kept_ < integrator_.completed() && !result_.failure) keep();
+        if (hooks_.measuring && (result_.curve.empty() || result_.curve.back().iterations < integrator_.completed())) {
+            if (latest_.iterations < integrator_.completed()) measure();
+            result_.curve.push_back(latest_);
+        }
+        take_picture();
+        integrator_.fill(result_.report);
+        result_.report.peak_memory_bytes = peak_memory();
+        warn();
+        return std::move(result_);
+    }
+
+private:
+    const Settings& with_light_paths(const Scene& scene) {
+        settings_.photons = light_paths(on_device_, camera_of(settings_, scene), settings_);
+        return settings_;
+    }
+
+    /// False where the device has no more memory for it.
+    bool submit() {
+        try {
+            if (hooks_.on_hash) {
+                for (const auto& [pass, hash] : integrator_.run_hashed())
+                    hooks_.on_hash(integrator_.completed(), pass, hash);
+            } else {
+                const auto ends = [&](std::uint32_t done) {
+                    return is_measured(hooks_.measuring, done) || (settings_.error && is_look(done));
+                };
+                integrator_.run(submission_size(integrator_.completed(), watch_.wall(), settings_, ends));
+            }
+        } catch (const Error& full) {
+            if (full.code() != ExitCode::out_of_device_memory || integrator_.completed() == 0) throw;
+            result_.failure = full;
+        }
+        return !result_.failure;
+    }
+
+    /// False where the caller wants it to end.
+    bool after_submission() {
+        const std::uint32_t done = integrator_.completed();
+        if (is_measured(hooks_.measuring, done)) {
+            watch_.off_the_clock([&] { measure(); });
+            if (is_snapshot(done)) result_.curve.push_back(latest_);
+        }
+        look();
+        const bool going = hooks_.keep_going({done, settings_.iterations, watch_.wall(), error_, estimate_});
+        const Checkpointing& checkpointing = hooks_.checkpointing;
+        if (checkpointing.keep && watch_.wall() - kept_at_ >= checkpointing.every)
+            watch_.off_the_clock([&] { keep(); });
+        if (hooks_.snapshots.show && watch_.wall() - shown_at_ >= hooks_.snapshots.every)
+            watch_.off_the_clock([&] { show(); });
+        return going;
+    }
+
+    bool ended() const {
+        if (integrator_.completed() == 0) return false;
+        const Measuring* measuring = hooks_.measuring;
+        const bool late = settings_.seconds && watch_.wall() >= *settings_.seconds;
+        const bool near = measuring && measuring->stop_at && error_ && error_->value <= *measuring->stop_at;
+        const bool sure = hooks_.target && is_met(*hooks_.target, estimate_);
+        return integrator_.completed() >= settings_.iterations || late || near || sure;
+    }
+
+    void measure() {
+        const Measuring& measuring = *hooks_.measuring;
+        latest_ = {integrator_.completed(), integrator_.seconds(), compare(integrator_.resolve(), measuring.reference)};
+        error_ = {measuring.metric, measuring.metric->of(latest_.error), latest_.iterations};
+    }
+
+    void look() {
+        if (settings_.error && is_look(integrator_.completed())) estimate_ = estimate_error(integrator_.error_sums());
+    }
+
+    void book() {
+        result_.report.wall_seconds = watch_.wall();
+        result_.report.cpu_seconds = watch_.cpu();
+        integrator_.fill(result_.report);
+    }
+
+    void keep() {
+        kept_at_ = watch_.wall();
+        kept_ = integrator_.completed();
+        book();
+        hooks_.checkpointing.keep(kept_, [&] { return Checkpoint{result_.report, result_.curve, integrator_.save()}; });
+    }
+
+    void show() {
+        shown_at_ = watch_.wall();
+        book();
+        take_picture();
+        hooks_.snapshots.show(result_);
+    }
+
+    void take_picture() {
+        result_.image = integrator_.resolve();
+        result_.aovs = settings_.aovs ? integrator_.aovs() : decltype(result_.aovs)();
+        if (settings_.error && integrator_.completed() >= least_estimated) {
+            const ErrorSums sums = integrator_.error_sums();
+            result_.estimate = estimate_error(sums);
+            result_.aovs.merge(error_channels(sums));
+        }
+    }
+
+    void warn() {
+        const auto warn_of = [&](std::string line) { result_.warnings.push_back(std::move(line)); };
+        if (result_.estimate) {
+            if (const auto warning = warning_of(*result_.estimate)) warn_of(*warning);
+        }
+        // Discs as wide as that hold no shadow of what the picture shows.
+        constexpr double most_of_picture = 0.5;
+        if (const double width = integrator_.disc_width(); width > most_of_picture) {
+            warn_of(fmt::format(
+                "{} photons an iteration do not suffice: half of their discs are wider than {:.2g} times the height "
+                "of the picture, and light that they bring is blurred as much: more --photons, {}or a scene that "
+                "ends nearer to what is seen",
+                *settings_.photons, width, settings_.direct == direct_gathered ? "--direct sampled, " : ""));
+        }
+        if (integrator_.invalid() > 0)
+            warn_of(fmt::format("{} contributions were not finite and were dropped", integrator_.invalid()));
+    }
+
+    const RenderHooks& hooks_;
+    double set_up_from_;  // wall_now()
+    Settings settings_;
+    SceneOnDevice on_device_;
+    Integrator integrator_;
+    Rendering result_;
+    Stopwatch watch_{0.0, 0.0};
+    double kept_at_ = 0.0, shown_at_ = 0.0;  // s of the watch
+    std::uint32_t kept_ = 0;                 // iterations
+    CurvePoint latest_;
+    std::optional<LatestError> error_;
+    std::optional<ErrorEstimate> estimate_;
+};
 
 }  // namespace
 
-Rendering render(const Scene& scene, const Settings& resolved, Device& device, const KeepGoing& keep_going,
-                 const Measuring* measuring, const Checkpointing& checkpointing, const OnPassHash& on_hash,
-                 const Snapshots& snapshots, const Target* target) {
-    assert(!target || resolved.error);
-    Rendering result;
-    const double setup = wall_now();
-    result.settings = resolved;
-    const Settings& settings = result.settings;
-    const SceneOnDevice on_device = put_on_device(scene, settings, device);
-    result.settings.photons = light_paths(on_device, camera_of(settings, scene), settings);
-    Integrator integrator(on_device, camera_of(settings, scene), settings);
-    if (checkpointing.from) {
-        result.report = checkpointing.from->report;
-        result.curve = checkpointing.from->curve;
-        integrator.restore(result.report, checkpointing.from->state);
-    }
-    result.report.setup_seconds = wall_now() - setup;
-
-    Stopwatch watch(result.report.wall_seconds, result.report.cpu_seconds);
-    const auto book = [&] {
-        result.report.wall_seconds = watch.wall();
-        result.report.cpu_seconds = watch.cpu();
-        integrator.fill(result.report);
-    };
-    double kept_at = watch.wall();
-    std::uint32_t kept = 0;  // iterations
-    const auto keep = [&] {
-        kept_at = watch.wall();
-        kept = integrator.completed();
-        book();
-        checkpointing.keep(kept, [&] { return Checkpoint{result.report, result.curve, integrator.save()}; });
-    };
-    const auto take_picture = [&] {
-        result.image = integrator.resolve();
-        result.aovs = settings.aovs ? integrator.aovs() : decltype(result.aovs)();
-        if (settings.error && integrator.completed() >= least_estimated) {
-            const ErrorSums sums = integrator.error_sums();
-            result.estimate = estimate_error(sums);
-            result.aovs.merge(error_channels(sums));
-        }
-    };
-    double shown_at = watch.wall();
-    const auto show = [&] {
-        shown_at = watch.wall();
-        book();
-        take_picture();
-        snapshots.show(result);
-    };
-    CurvePoint latest;
-    std::optional<LatestError> error;
-    const auto take_measure = [&] {
-        latest = measure(integrator, measuring->reference);
-        error = {measuring->metric, measuring->metric->of(latest.error), latest.iterations};
-    };
-    if (checkpointing.from && measuring) watch.off_the_clock(take_measure);
-    std::optional<ErrorEstimate> estimate;
-    const auto look = [&] {
-        if (settings.error && is_look(integrator.completed())) estimate = estimate_error(integrator.error_sums());
-    };
-    look();  // the checkpoint may be of a render that ended so
-    const auto ended = [&] {
-        if (integrator.completed() == 0) return false;
-        const bool late = settings.seconds && watch.wall() >= *settings.seconds;
-        const bool near = measuring && measuring->stop_at && error && error->value <= *measuring->stop_at;
-        const bool sure = target && is_met(*target, estimate);
-        return integrator.completed() >= settings.iterations || late || near || sure;
-    };
-    const auto submit = [&] {
-        if (on_hash) {
-            for (const auto& [pass, hash] : integrator.run_hashed()) on_hash(integrator.completed(), pass, hash);
-        } else {
-            integrator.run(submission_size(integrator.completed(), watch.wall(), settings, [&](std::uint32_t done) {
-                return is_measured(measuring, done) || (settings.error && is_look(done));
-            }));
-        }
-    };
-    bool going = true;
-    while (going && !ended()) {
-        try {
-            submit();
-        } catch (const Error& full) {
-            if (full.code() != ExitCode::out_of_device_memory || integrator.completed() == 0) throw;
-            result.failure = full;
-            break;
-        }
-        const std::uint32_t done = integrator.completed();
-        if (is_measured(measuring, done)) {
-            watch.off_the_clock(take_measure);
-            if (is_snapshot(done)) result.curve.push_back(latest);
-        }
-        look();
-        going = keep_going({done, settings.iterations, watch.wall(), error, estimate});
-        if (checkpointing.keep && watch.wall() - kept_at >= checkpointing.every) watch.off_the_clock(keep);
-        if (snapshots.show && watch.wall() - shown_at >= snapshots.every) watch.off_the_clock(show);
-    }
-    book();
-    if (checkpointing.keep && kept < integrator.completed() && !result.failure) keep();
-    if (measuring && (result.curve.empty() || result.curve.back().iterations < integrator.completed())) {
-        if (latest.iterations < integrator.completed()) take_measure();
-        result.curve.push_back(latest);
-    }
-    take_picture();
-    if (result.estimate) {
-        if (const auto warning = warning_of(*result.estimate)) result.warnings.push_back(*warning);
-    }
-    integrator.fill(result.report);
-    result.report.peak_memory_bytes = peak_memory();
-    // Discs as wide as that hold no shadow of what the picture shows.
-    constexpr double most_of_picture = 0.5;
-    if (const double width = integrator.disc_width(); width > most_of_picture) {
-        result.warnings.push_back(fmt::format(
-            "{} photons an iteration do not suffice: half of their discs are wider than {:.2g} times the "
-            "height of the picture, and light that they bring is blurred as much: more --photons, {}or a "
-            "scene that ends nearer to what is seen",
-            *result.settings.photons, width, settings.direct == direct_gathered ? "--direct sampled, " : ""));
-    }
-    if (integrator.invalid() > 0) {
-        result.warnings.push_back(
-            fmt::format("{} contributions were not finite and were dropped", integrator.invalid()));
-    }
-    return result;
+Rendering render(const Scene& scene, const Settings& settings, Device& device, const RenderHooks& hooks) {
+    assert(!hooks.target || settings.error);
+    return Run(scene, settings, device, hooks).finish();
 }
 
 }  // namespace vkcppm

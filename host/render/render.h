@@ -86,18 +86,24 @@ struct Snapshots {
     std::function<void(const Rendering&)> show = {};
 };
 
+/// What happens on the way of a render. None of it changes the picture.
+struct RenderHooks {
+    KeepGoing keep_going = [](const Progress&) { return true; };
+    const Measuring* measuring = nullptr;
+    Checkpointing checkpointing = {};
+    OnPassHash on_hash = {};  // where there is one a submission is a pass (Integrator::run_hashed)
+    Snapshots snapshots = {};
+    const Target* target = nullptr;  // then the settings must ask for the error
+};
+
 /// Renders `scene` by the estimator of the settings, which must be resolved. Throws Error on a scene or image that does
 /// not fit the device (out_of_device_memory), on a lost device (device_lost), on a reference of another size (usage).
-/// Where it is measured, submissions end at snapshots, or with every iteration where it stops at an error; the picture
-/// is the same, and neither Settings::seconds nor the report's seconds count the time it takes. Where what grows with
-/// the paths no longer fits the device, the picture is of the iterations before, that error is the failure, and no
-/// checkpoint is kept at the end. From a checkpoint, of the same scene and settings but for their bounds `iterations`
-/// and `seconds`, it goes on as if it had never ended: iterations, seconds, totals and curve count from the first
-/// start. on_hash: a submission is a pass, and the hash of each is told (Integrator::run_hashed); the picture is the
-/// same. Snapshots change nothing of it either, and the time that they take is not counted. With a target the settings
-/// must ask for the error.
-Rendering render(const Scene& scene, const Settings& settings, Device& device, const KeepGoing& keep_going,
-                 const Measuring* measuring = nullptr, const Checkpointing& checkpointing = {},
-                 const OnPassHash& on_hash = {}, const Snapshots& snapshots = {}, const Target* target = nullptr);
+/// Where it is measured, submissions end at snapshots, or with every iteration where it stops at an error; neither
+/// Settings::seconds nor the report's seconds count the time that measuring, checkpoints and snapshots take. Where what
+/// grows with the paths no longer fits the device, the picture is of the iterations before, that error is the failure,
+/// and no checkpoint is kept at the end. From a checkpoint, of the same scene and settings but for their bounds
+/// `iterations` and `seconds`, it goes on as if it had never ended: iterations, seconds, totals and curve count from
+/// the first start.
+Rendering render(const Scene& scene, const Settings& settings, Device& device, const RenderHooks& hooks = {});
 
 }  // namespace vkcppm

@@ -72,7 +72,7 @@ TEST_P(ClosedForm, MeanRadianceOfEveryRegion) {
     const Scene scene = load_gltf(scenes / expected["scene"].get<std::string>());
     EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.front();
     const Settings settings = resolve_settings(settings_of(expected, direct), scene);
-    const Rendering rendering = render(scene, settings, device(), [](const Progress&) { return true; });
+    const Rendering rendering = render(scene, settings, device());
     EXPECT_TRUE(rendering.warnings.empty()) << rendering.warnings.front();
 
     expect_regions(rendering.image, expected);

@@ -24,7 +24,7 @@ Rendering tiny_render(Device& on) {
     settings.photons = 256;
     settings.iterations = 2;
     const Scene scene = room();
-    return render(scene, resolve_settings(settings, scene), on, [](const Progress&) { return true; });
+    return render(scene, resolve_settings(settings, scene), on);
 }
 
 /// Whether both pictures have the same bits.

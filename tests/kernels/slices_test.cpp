@@ -101,7 +101,7 @@ TEST_F(SlicesOfARender, AddUpToItWhereRadiiStay) {
         const Slice slice = slicer.renderer.render_slice(pilot.pilot, first, 6, always).value();
         for (std::size_t i = 0; i < film.size(); ++i) film[i] += slice.sums.film[i];
     }
-    const Rendering whole = render(slicer.scene, resolve_settings(settings, slicer.scene), plain_device(), always);
+    const Rendering whole = render(slicer.scene, resolve_settings(settings, slicer.scene), plain_device());
     double error = 0.0, sum = 0.0;
     std::size_t differing = 0;
     for (std::size_t i = 0; i < film.size(); ++i) {
@@ -121,7 +121,7 @@ TEST_F(SlicesOfARender, ThePilotIsItsBeginning) {
     settings.iterations = 16;
     Slicer slicer(settings);
     const PilotOfSlices pilot = slicer.renderer.render_pilot(16, always).value();
-    const Rendering whole = render(slicer.scene, resolve_settings(settings, slicer.scene), plain_device(), always);
+    const Rendering whole = render(slicer.scene, resolve_settings(settings, slicer.scene), plain_device());
     const Image picture = picture_of(pilot.slice.sums);
     for (std::size_t i = 0; i < picture.rgb.size(); ++i) {
         for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(picture.rgb[i][c], whole.image.rgb[i][c]) << "pixel " << i;

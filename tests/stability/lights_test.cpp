@@ -92,8 +92,7 @@ TEST_F(HardLights, BeyondFloatsAreCountedAndReported) {
     settings.photons = 1024;
     settings.iterations = 2;
     settings.direct = direct_gathered;  // the sum of photons is beyond floats, what a light sends to a point is not
-    const Rendering rendering =
-        render(scene, resolve_settings(settings, scene), device(), [](const Progress&) { return true; });
+    const Rendering rendering = render(scene, resolve_settings(settings, scene), device());
     std::size_t bad = 0;
     for (const glm::vec3& rgb : rendering.image.rgb) {
         for (int c = 0; c < 3; ++c) bad += std::isfinite(rgb[c]) ? 0 : 1;

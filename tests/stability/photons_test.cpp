@@ -182,8 +182,7 @@ TEST_F(HardPhotons, OnWideGround) {
         settings.direct = c.direct;
         settings.iterations = 16;
         const Scene scene = ground(c.half);
-        const Rendering got =
-            render(scene, resolve_settings(settings, scene), plain_device(), [](const Progress&) { return true; });
+        const Rendering got = render(scene, resolve_settings(settings, scene), plain_device());
         EXPECT_EQ(!got.warnings.empty(), c.says) << c.half << " m, " << c.direct;
         for (const std::string& line : got.warnings) {
             EXPECT_NE(line.find("photons an iteration do not suffice"), std::string::npos) << line;
