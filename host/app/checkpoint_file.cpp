@@ -17,6 +17,7 @@
 #include "app/version.h"
 #include "core/error.h"
 #include "core/fnv1a.h"
+#include "core/input_file.h"
 #include "io/atomic_file.h"
 #include "render/kernels.h"
 
@@ -152,12 +153,11 @@ Checkpoint read_header(Reader& header) {
 /// A checkpoint file, open and found whole.
 class OpenCheckpoint {
 public:
-    explicit OpenCheckpoint(const fs::path& file) : file_(file), stream_(file, std::ios::binary) {
-        if (!stream_) {
-            throw Error(ExitCode::no_input, fmt::format("cannot open {}: {}", file.string(), std::strerror(errno)));
-        }
-        std::error_code error;
-        const std::uint64_t size = fs::is_regular_file(file, error) ? fs::file_size(file, error) : 0;
+    explicit OpenCheckpoint(const fs::path& file) : file_(file) {
+        require_file(file);
+        stream_.open(file, std::ios::binary);
+        std::error_code ignored;
+        const std::uint64_t size = stream_ ? fs::file_size(file, ignored) : 0;
         std::string fixed = size < fixed_bytes + sizeof(std::uint64_t) ? "" : read(fixed_bytes);
         if (!fixed.starts_with(magic)) fail("is no checkpoint of vkcppm");
         std::uint64_t words[3];

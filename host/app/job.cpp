@@ -16,6 +16,7 @@
 #include "app/provenance.h"
 #include "app/version.h"
 #include "core/fnv1a.h"
+#include "core/input_file.h"
 #include "io/atomic_file.h"
 
 namespace vkcppm {
@@ -269,11 +270,9 @@ void write_job(const Job& job) { write_file(job_file(job.folder), json_text(json
 
 Job read_job(const fs::path& folder) {
     const fs::path file = job_file(folder);
+    if (const auto why = why_unreadable(file))
+        throw Error(ExitCode::no_input, fmt::format("{}: {}: vkcppm plan makes it", file.string(), *why));
     std::ifstream stream(file, std::ios::binary);
-    if (!stream) {
-        throw Error(ExitCode::no_input,
-                    fmt::format("cannot open {}: {}: vkcppm plan makes it", file.string(), std::strerror(errno)));
-    }
     constexpr std::uint64_t most_bytes = 1u << 20;
     std::error_code error;
     if (const std::uint64_t bytes = fs::file_size(file, error); error || bytes > most_bytes)

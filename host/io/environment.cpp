@@ -14,7 +14,7 @@
 #include "core/fnv1a.h"
 #include "io/exr.h"
 #include "io/hdr.h"
-#include "io/input_file.h"
+#include "core/input_file.h"
 
 namespace vkcppm {
 namespace fs = std::filesystem;

@@ -24,7 +24,7 @@
 #include "core/error.h"
 #include "io/atomic_file.h"
 #include "io/exr_header.h"
-#include "io/input_file.h"
+#include "core/input_file.h"
 
 namespace vkcppm {
 namespace fs = std::filesystem;

@@ -517,7 +517,8 @@ TEST_F(Cli, WhatIsNoFileOrNoFolderAnyLongerIsSaidInALine) {
     const std::string settings = " --size 4x4 --iterations 1 --photons 16 --quiet";
     expect_done(shell("\"$0\" \"$1\" -o /dev/null" + settings));
     expect_failure(shell("\"$0\" \"$1\" -o /dev/full" + settings), 73, {"/dev/full: No space left on device"});
-    expect_failure(shell("cat \"$1\" | \"$0\" /dev/stdin -o a.exr" + settings), 66, {"/dev/stdin: not a regular file"});
+    expect_failure(shell("cat \"$1\" | \"$0\" /dev/stdin -o a.exr" + settings), 66,
+                   {"/dev/stdin: it is not a regular file"});
     expect_failure(shell("mkdir gone; cd gone; rmdir ../gone; \"$0\" s.gltf -o /dev/null" + settings), 66,
                    {"s.gltf: no such file"});
     expect_failure(shell("ln -s l.exr l.exr; \"$0\" \"$1\" -o l.exr" + settings), 73, {"cannot write l.exr"});

@@ -12,6 +12,7 @@
 
 #include "support/files/files.h"
 #include "support/files/temporary_folder.h"
+#include "support/files/unprivileged.h"
 #include "support/thrown.h"
 
 namespace vkcppm {
@@ -38,25 +39,6 @@ public:
 private:
     rlimit previous_{};
     void (*previous_handler_)(int);
-};
-
-/// While it lives, root is nobody, who owns `folder`; anybody else stays who he is.
-class Unprivileged {
-public:
-    explicit Unprivileged(const fs::path& folder) {
-        if (!was_root_) return;
-        EXPECT_EQ(::chown(folder.c_str(), nobody, nobody), 0);
-        EXPECT_EQ(::setresuid(nobody, nobody, 0), 0);
-    }
-    ~Unprivileged() {
-        if (was_root_) {
-            EXPECT_EQ(::setresuid(0, 0, 0), 0);
-        }
-    }
-
-private:
-    static constexpr uid_t nobody = 65534;
-    const bool was_root_ = ::geteuid() == 0;
 };
 
 void expect_cannot_write(const std::optional<Error>& error, const std::string& file) {
@@ -155,7 +137,7 @@ TEST(AtomicFile, RefusesWhatIsNoFile) {
 
 TEST(AtomicFile, RefusesWhatIsProtected) {
     const test::TemporaryFolder folder;
-    const Unprivileged unprivileged(folder.path());
+    const test::Unprivileged unprivileged(folder.path());
     test::write_bytes(folder / "a", "good");
     fs::permissions(folder / "a", fs::perms::owner_read);
     expect_cannot_write(test::thrown_by([&] { check_writable(folder / "a"); }), (folder / "a").string());

@@ -149,7 +149,7 @@ TEST_F(CheckpointFile, AForeignFileFormatAndStateAreToldApart) {
     EXPECT_EQ(missing->code(), ExitCode::no_input);
     const auto folder = test::thrown_by([&] { read_checkpoint(folder_.path(), identity(), pixels); });
     ASSERT_TRUE(folder);
-    EXPECT_EQ(folder->code(), ExitCode::bad_scene);
+    EXPECT_EQ(folder->code(), ExitCode::no_input);
 }
 
 TEST_F(CheckpointFile, OfAnotherRenderTellsEveryDifference) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/fnv1a.h"
+#include "core/input_file.h"
 #include "scene/bad_scene.h"
 #include "scene/gltf/schema.h"
 #include "scene/gltf/uri.h"
@@ -13,14 +14,8 @@
 namespace vkcppm {
 
 std::optional<Bytes> read_bytes(const std::filesystem::path& path, std::size_t limit, std::string& why) {
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(path, error);
-    if (!std::filesystem::exists(status)) {
-        why = "no such file";
-        return std::nullopt;
-    }
-    if (!std::filesystem::is_regular_file(status)) {
-        why = "not a regular file";
+    if (const auto reason = why_unreadable(path)) {
+        why = *reason;
         return std::nullopt;
     }
     std::ifstream stream(path, std::ios::binary | std::ios::ate);
