@@ -30,7 +30,8 @@ Condition keep_bound(const Bound& bound, const PictureMeasures& measures) {
     const std::vector<NamedMeasure> all = named(measures);
     const auto found = std::ranges::find(all, bound.name, &NamedMeasure::name);
     assert(found != all.end());
-    const bool holds = found->value <= bound.most;  // NaN does not
+    if (std::isnan(found->value)) return {bound.name, false, fmt::format("{} is no number", bound.name)};
+    const bool holds = found->value <= bound.most;
     return {bound.name, holds,
             fmt::format("{} {:.4g} is {} {:.4g}", bound.name, found->value, holds ? "within" : "above", bound.most)};
 }

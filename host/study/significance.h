@@ -24,7 +24,7 @@ inline constexpr std::uint32_t least_error_batches = 8;
 /// A picture that knows how far it can be trusted.
 struct NoisyPicture {
     Image mean;
-    std::vector<float> standard_error{};  // [pixels], root mean square over the channels
+    std::vector<float> standard_error{};  // [pixels], root mean square over the channels; finite where the mean is
     /// The same of the means over blocks, by the side of the blocks; [blocks_of(side)]. A side that is not there is
     /// taken as if the noise of all pixels of a block moved together.
     std::map<std::uint32_t, std::vector<float>> block_error{};

@@ -304,6 +304,23 @@ TEST_F(CheckCli, BoundsDecideWhereTheyAreGiven) {
     expect_failure(run({"check", "a.exr", "r.exr"}), 2, {"a.exr has no channel StdErr", "--max relmse="}, "no bounds");
     expect_failure(run({"check", "a.exr", "r.exr", "--max", "flip=1", "--level", "1%"}), 2, {"StdErr"}, "a level");
     expect_failure(run({"check", "a.exr", "missing.exr", "--max", "flip=1"}), 66, {"missing.exr"}, "missing");
+    write_exr(folder_ / "nan.exr", {{1, 1}, {glm::vec3(NAN)}});
+    expect_verdict(run({"check", "nan.exr", "nan.exr", "--max", "mse=1"}), 1, "differs: mse is no number; no pixel");
+}
+
+TEST_F(CheckCli, ErrorsThatAreNoNumbersExplainNothing) {
+    write_noisy("a.exr", 0.5f, 1);
+    ExrChannels channels = read_exr_channels(folder_ / "a.exr", "");
+    for (const float error : {NAN, INFINITY, -1.0f}) {
+        channels.values["StdErr"][33] = error;
+        write_exr(folder_ / "r.exr", channels, {});
+        expect_failure(run({"check", "a.exr", "r.exr"}), 65, {"r.exr: StdErr is ", "column 1, row 1", "0 or more"});
+        expect_verdict(run({"check", "a.exr", "r.exr", "--max", "mse=1"}), 0, "passes: ");
+        for (const char* colour : {"R", "G", "B"}) channels.values[colour][33] = NAN;
+        write_exr(folder_ / "holed.exr", channels, {});
+        expect_verdict(run({"check", "holed.exr", "holed.exr"}), 0, "passes: noise explains all 780 pixels");
+        for (const char* colour : {"R", "G", "B"}) channels.values[colour][33] = 0.5f;
+    }
 }
 
 TEST_F(CheckCli, LeavesAPageAndXmlAndNeverOverwritesAPicture) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -53,18 +54,33 @@ NoisyPicture read_picture(const fs::path& file) {
     return picture;
 }
 
-/// The settings, with the usual level where there are no bounds. Throws Error(usage) where noise is to explain the
-/// difference and a picture does not know its own.
+/// Throws Error(bad_scene) where a pixel whose colour is a number has a standard error that is none of 0 or more.
+void require_errors(const fs::path& file, const NoisyPicture& picture) {
+    for (std::size_t i = 0; i < picture.standard_error.size(); ++i) {
+        const float error = picture.standard_error[i];
+        if ((std::isfinite(error) && error >= 0.0f) || !is_finite(picture.mean.rgb[i])) continue;
+        const std::uint32_t width = picture.mean.extent.width;
+        throw Error(ExitCode::bad_scene,
+                    fmt::format("{}: StdErr is {} in column {}, row {}; it is a number of 0 or more", file.string(),
+                                error, i % width, i / width));
+    }
+}
+
+/// The settings, with the usual level where there are no bounds. Throws Error where noise is to explain the difference
+/// and a picture does not know its own: usage without errors, bad_scene where they are none.
 CheckSettings resolve(const CheckOptions& options, const NoisyPicture& image, const NoisyPicture& reference) {
     CheckSettings settings = options.settings;
     if (!settings.level && settings.bounds.empty() && !settings.max_pixels) settings.level = usual_level;
     for (const auto& [file, picture] : {std::pair(&options.image, &image), std::pair(&options.reference, &reference)}) {
-        if (!settings.level || !picture->standard_error.empty()) continue;
-        throw Error(ExitCode::usage,
-                    fmt::format("{} has no channel StdErr, which vkcppm reference writes, so nothing tells noise from "
-                                "a difference: give bounds, such as --max relmse=0.001, --max flip=0.02 or "
-                                "--max-pixels 0.1%",
-                                file->string()));
+        if (!settings.level) continue;
+        if (picture->standard_error.empty()) {
+            throw Error(ExitCode::usage,
+                        fmt::format("{} has no channel StdErr, which vkcppm reference and --error write, so nothing "
+                                    "tells noise from a difference: give bounds, such as --max relmse=0.001, --max "
+                                    "flip=0.02 or --max-pixels 0.1%",
+                                    file->string()));
+        }
+        require_errors(*file, *picture);
     }
     return settings;
 }
