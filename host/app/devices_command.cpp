@@ -29,7 +29,7 @@ nlohmann::ordered_json json_of(const std::vector<DeviceInfo>& devices) {
 }
 
 std::string plain_text(const std::vector<DeviceInfo>& devices) {
-    if (devices.empty()) return "no Vulkan devices\n";
+    if (devices.empty()) return "no Vulkan devices: vkcppm doctor tells why\n";
     std::string text;
     for (const DeviceInfo& device : devices) {
         text += fmt::format("{}: {} ({})\n   {}, Vulkan {}, {:.1f} GiB\n   uuid:{}\n", device.index, device.name,

@@ -26,10 +26,9 @@ Reference refine_with_progress(const Scene& scene, const ReferenceSettings& sett
     ProgressLine line(stderr, ::isatty(STDERR_FILENO) == 1, settings.render.seconds);
     return make_reference(scene, settings, device, [&](const ReferenceProgress& progress) {
         if (!options.quiet) {
-            line.update(progress.wall_seconds,
-                        fmt::format("{}: {} paths a pixel, {} iterations of caustics, relMSE about {:.2g}",
-                                    duration_text(progress.wall_seconds), progress.samples, progress.iterations,
-                                    progress.relmse));
+            line.update(progress.wall_seconds, fmt::format("{}: {} paths a pixel, {} iterations of caustics{}",
+                                                           duration_text(progress.wall_seconds), progress.samples,
+                                                           progress.iterations, relmse_text(progress)));
         }
         return !interrupted();
     });

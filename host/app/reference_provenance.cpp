@@ -82,6 +82,10 @@ std::string reference_json(const ReferenceOptions& options, const Scene& scene, 
     return json_text(json, 2) + "\n";
 }
 
+std::string relmse_text(const ReferenceProgress& progress) {
+    return progress.relmse > 0.0 ? fmt::format(", relMSE about {:.2g}", progress.relmse) : "";
+}
+
 std::string reference_summary(const Reference& reference) {
     const std::size_t pixels = reference.trusted.size();
     const auto share = [](double part, double whole) { return whole > 0.0 ? 100.0 * part / whole : 0.0; };

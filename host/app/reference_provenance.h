@@ -20,6 +20,9 @@ ExrChannels reference_channels(const Reference& reference);
 /// A JSON object: settings, error, and where there is room for them (`stats`) times of the passes.
 std::string reference_json(const ReferenceOptions& options, const Scene& scene, const Reference& reference, bool stats);
 
+/// ", relMSE about 0.0034": how far a reference is; nothing while that is not known.
+std::string relmse_text(const ReferenceProgress& progress);
+
 /// The summary to read.
 std::string reference_summary(const Reference& reference);
 

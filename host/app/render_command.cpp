@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include "app/checkpoint_file.h"
@@ -67,19 +68,21 @@ void print_stop(const StopAt& stop_at, const Rendering& rendering, bool quiet) {
               fmt::format("--stop-at {:.6g}", stop_at.value), quiet);
 }
 
-/// Says whether the error to aim at was met.
-void print_target(const Target& target, const Rendering& rendering, bool quiet) {
-    const std::string wanted = fmt::format("--target {}={:g}", target.measure->name, target.value);
+/// Says what the render takes its error to be, and whether that to aim at was met.
+void print_estimate(const std::optional<Target>& target, const Rendering& rendering, bool quiet) {
+    const std::string wanted =
+        target ? fmt::format("--target {}={:g}", target->measure->name, target->value) : "--error";
     const std::uint64_t done = rendering.report.iterations;
     if (!rendering.estimate) {
         print_message(
-            fmt::format("warning: {} was not looked at: the first look is after {} iterations, and {} were done",
-                        wanted, 2 * least_estimated, done));
+            fmt::format("warning: {}: {} iterations tell no error, {} or more do", wanted, done, least_estimated));
         return;
     }
-    print_end(is_met(target, rendering.estimate),
-              fmt::format("at most {:.3g} by {:g} % after {} iterations", upper_bound(target, *rendering.estimate),
-                          100.0 * target.confidence, done),
+    if (!quiet) print_message(estimate_line(*rendering.estimate));
+    if (!target) return;
+    print_end(is_met(*target, rendering.estimate),
+              fmt::format("at most {:.3g} by {:g} % after {} iterations", upper_bound(*target, *rendering.estimate),
+                          100.0 * target->confidence, done),
               wanted, quiet);
 }
 
@@ -199,28 +202,33 @@ Rendering render_with_progress(const Scene& scene, const Settings& settings, con
     return rendering;
 }
 
+/// Writes all that can be written, then throws Error(cannot_write) of what cannot: a disk that is full under one file
+/// costs no other.
 void write_outputs(const RenderOptions& options, const Scene& scene, const Rendering& rendering) {
-    const auto say_wrote = [&](const fs::path& file) {
-        if (!options.quiet) print_message("wrote " + file.string());
+    std::vector<std::string> failures;
+    const auto write = [&](const fs::path& file, const auto& to_file) {
+        try {
+            to_file();
+            if (!options.quiet) print_message("wrote " + file.string());
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::cannot_write) throw;
+            failures.emplace_back(error.what());
+        }
     };
-    write_picture(options, scene, rendering);
-    if (interrupted()) {
-        print_message(fmt::format("interrupted after {} iterations: wrote {}", rendering.report.iterations,
-                                  options.output.string()));
-    } else {
-        say_wrote(options.output);
-    }
+    if (interrupted()) print_message(fmt::format("interrupted after {} iterations", rendering.report.iterations));
+    write(options.output, [&] { write_picture(options, scene, rendering); });
     const Display display =
         options.png ? display_of(options.display, rendering.image, options.png->string(), options.quiet) : Display();
     if (options.png) {
-        write_png(*options.png, rendering.image, display, options.png_depth);
-        say_wrote(*options.png);
-        warn_of_clipping(*options.png, rendering.image, display);
+        write(*options.png, [&] {
+            write_png(*options.png, rendering.image, display, options.png_depth);
+            warn_of_clipping(*options.png, rendering.image, display);
+        });
     }
     if (options.stats) {
-        write_file(*options.stats, stats_json(options, scene, rendering, display));
-        say_wrote(*options.stats);
+        write(*options.stats, [&] { write_file(*options.stats, stats_json(options, scene, rendering, display)); });
     }
+    if (!failures.empty()) throw Error(ExitCode::cannot_write, fmt::format("{}", fmt::join(failures, "; ")));
 }
 
 void print_table(const Report& report) {
@@ -235,8 +243,7 @@ void tell_and_write(const RenderOptions& options, const Scene& scene, const Rend
         print_result(fmt::format("picture {}\n", hash_text(hash_of(rendering.image))));
     }
     if (options.stop_at) print_stop(*options.stop_at, rendering, options.quiet);
-    if (rendering.estimate && !options.quiet) print_message(estimate_line(*rendering.estimate));
-    if (options.target) print_target(*options.target, rendering, options.quiet);
+    if (options.settings.error) print_estimate(options.target, rendering, options.quiet);
     write_outputs(options, scene, rendering);
     if (options.verbose) print_table(rendering.report);
     if (const auto& failure = rendering.failure) {
@@ -271,7 +278,7 @@ std::vector<Output> outputs_of(const RenderOptions& options) {
 /// Renders the frames one after the other on one device. One that is interrupted is not written: what is there is done.
 void render_frames(const RenderOptions& options) {
     const auto [first, last] = *options.frames;
-    for (std::uint32_t i = first; i <= last; ++i) {
+    for (std::uint32_t i = first; i <= last && !interrupted(); ++i) {
         check_outputs({options.scene.file, options.scene.environment}, outputs_of(frame_of(options, i)), options.hash);
     }
     std::optional<Device> device;
@@ -320,7 +327,8 @@ void execute(const RenderOptions& options) {
     // What is gone on from in its place is read first, which tells whether it is a checkpoint.
     const std::string ending = options.resume && !keeps_elsewhere ? ending_of(*options.checkpoint) : std::string();
     std::vector<Output> outputs = outputs_of(options);
-    outputs.push_back({"--checkpoint", options.checkpoint, ending.c_str()});
+    const char* keeps = options.resume && !keeps_elsewhere ? "--resume" : "--checkpoint";
+    outputs.push_back({keeps, options.checkpoint, ending.c_str()});
     check_outputs({options.scene.file, options.scene.environment, options.reference,
                    keeps_elsewhere ? options.resume : std::nullopt},
                   outputs, options.hash);

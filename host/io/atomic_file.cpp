@@ -139,8 +139,10 @@ void write_file(const fs::path& file, std::initializer_list<std::string_view> pa
 }
 
 void check_writable(const fs::path& file) {
-    if (is_standard_output(file)) return;
-    if (!is_stream(file)) {
+    if (is_standard_output(file)) {
+        const int flags = ::fcntl(STDOUT_FILENO, F_GETFL);
+        if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY) fail(file, "standard output is closed");
+    } else if (!is_stream(file)) {
         Part part(file);
     } else if (::access(file.c_str(), W_OK) != 0) {  // to open a pipe would wait for its reader
         fail_with_errno(file);

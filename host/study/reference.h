@@ -66,7 +66,7 @@ struct Reference {
 struct ReferenceProgress {
     std::uint32_t samples = 0;
     std::uint32_t iterations = 0;
-    double relmse = 0.0;  // expected, so far
+    double relmse = 0.0;  // expected, so far; 0 while there are too few batches to tell
     double wall_seconds = 0.0;
 };
 

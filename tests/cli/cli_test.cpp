@@ -652,6 +652,13 @@ TEST_F(Cli, AFullDiskIsNoticedAndLeavesNothing) {
     expect_failure(result, 73, {"good.exr", "File too large"}, "full disk");
     EXPECT_EQ(test::read_bytes(folder_ / "good.exr"), "good");
     EXPECT_EQ(test::names_in(folder_.path()), std::set<std::string>{"good.exr"});
+    const auto both = shell(
+        "ulimit -f 4; exec \"$0\" \"$1\" --size 64x64 --iterations 1 --photons 5000 --quiet -o good.exr --png "
+        "black.png "
+        "--exposure -128 --stats /dev/full");
+    expect_failure(both, 73, {"good.exr: File too large; cannot write /dev/full"}, "each file that cannot be written");
+    EXPECT_EQ(test::names_in(folder_.path()), (std::set<std::string>{"black.png", "good.exr"})) << "the one that can";
+    fs::remove(folder_ / "black.png");
     const auto reference = shell(
         "ulimit -f 4; exec \"$0\" reference \"$1\" --size 64x48 --samples 128 --iterations 32 "
         "--photons 500 --quiet -o good.exr");
@@ -669,6 +676,8 @@ TEST_F(Cli, UnwritableStandardOutputIsAnError) {
         EXPECT_EQ(result.exit_code, 73) << script << "\n" << result.err;
         EXPECT_TRUE(contains(result.err, "error: cannot write to standard output")) << script << "\n" << result.err;
     }
+    expect_failure(shell("exec \"$0\" missing.gltf -o - >&-"), 73, {"cannot write -", "closed"},
+                   "a picture, before the scene is looked for");
 }
 
 TEST_F(Cli, ClosedStreamsDoNotHurtThePicture) {
@@ -1043,7 +1052,8 @@ TEST_P(CliSignal, KeepsWhatThereIs) {
     const auto result = process.wait();
     expect_done(result);
     const std::string done = attributes("a.exr").at("vkcppm.iterations_done");
-    EXPECT_TRUE(contains(result.err, "interrupted after " + done + " iterations: wrote a.exr")) << result.err;
+    EXPECT_TRUE(contains(result.err, "interrupted after " + done + " iterations\n")) << result.err;
+    EXPECT_TRUE(contains(result.err, "wrote a.exr\n")) << result.err;
     EXPECT_GE(std::stoull(done), 1u);
     const Json stats = Json::parse(test::read_bytes(folder_ / "a.json"));
     EXPECT_EQ(stats.at("totals").at("iterations").dump(), done);

@@ -85,7 +85,7 @@ TEST_F(OwnError, SaysWhereATargetWasNotReached) {
     EXPECT_EQ(stats("a.json").at("target").at("reached"), false);
     const auto early = render({"--target", "relmse=1e-9", "--iterations", "3", "-o", "a.exr", "--quiet"});
     expect_done(early);
-    EXPECT_TRUE(contains(early.err, "the first look is after 32 iterations, and 3 were done")) << early.err;
+    EXPECT_TRUE(contains(early.err, "--target relmse=1e-09: 3 iterations tell no error, 16 or more do")) << early.err;
     EXPECT_FALSE(attributes("a.exr").contains("vkcppm.expected_relmse"));
 }
 

@@ -134,8 +134,8 @@ Image make_race_reference(const RaceOptions& options, RaceInput& input, const Ra
     const auto refine = [&](const ReferenceProgress& progress) {
         if (!options.quiet) {
             line.update(progress.wall_seconds,
-                        fmt::format("reference: {} of {}, relMSE about {:.2g}", duration_text(progress.wall_seconds),
-                                    duration_text(*options.make_reference), progress.relmse));
+                        fmt::format("reference: {} of {}{}", duration_text(progress.wall_seconds),
+                                    duration_text(*options.make_reference), relmse_text(progress)));
         }
         return !interrupted();
     };
