@@ -184,8 +184,10 @@ void add_device(CLI::App& app, Device::Options& device) {
         "Neither read nor write compiled kernels in $XDG_CACHE_HOME/vkcppm");
 }
 
+std::string what_is_wrong(const CLI::App& app, const std::string& found);
+
 /// NAME or NAME:PARAMETER=VALUE:...; the rest as in `common`.
-Entrant parse_entrant(const std::string& text, const Settings& common) {
+Entrant parse_entrant(const std::string& text, const Settings& common) try {
     std::vector<std::string> parts;
     std::istringstream stream(text);
     for (std::string part; std::getline(stream, part, ':');) parts.push_back(part);
@@ -200,18 +202,19 @@ Entrant parse_entrant(const std::string& text, const Settings& common) {
         const std::size_t equals = parts[i].find('=');
         const std::string name = parts[i].substr(0, equals);
         if (equals == std::string::npos || std::ranges::find(names, name) == names.end()) {
-            refuse(
-                "--estimators", text,
-                fmt::format("NAME:PARAMETER=VALUE:... with parameters of {}: '{}'", fmt::join(names, ", "), parts[i]));
+            throw Error(ExitCode::usage,
+                        fmt::format("'{}' is not PARAMETER=VALUE, of {}", parts[i], fmt::join(names, ", ")));
         }
         words.insert(words.end(), {"--" + name, parts[i].substr(equals + 1)});
     }
     try {
         app.parse(Words(words.rbegin(), words.rend()));
     } catch (const CLI::ParseError& error) {
-        throw Error(ExitCode::usage, fmt::format("--estimators: '{}': {}", text, error.what()));
+        throw Error(ExitCode::usage, what_is_wrong(app, error.what()));
     }
     return entrant;
+} catch (const Error& error) {
+    throw Error(error.code(), fmt::format("--estimators: '{}': {}", text, error.what()));
 }
 
 /// Letters that are put in, left out or replaced between two words (Levenshtein 1966).
@@ -236,6 +239,16 @@ std::string quoted(const std::string& word) {
     std::string text = "'";
     for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
     return text + "'";
+}
+
+/// Throws Error(usage) where more is given beside an option than what goes with it.
+void require_alone(const CLI::App& app, const char* name, const Words& with, const char* why) {
+    if (app.count(name) == 0) return;
+    for (const CLI::Option* option : app.get_options()) {
+        const std::string other = option->get_name();
+        if (option->count() > 0 && other != name && std::ranges::find(with, other) == with.end())
+            throw Error(ExitCode::usage, fmt::format("{} excludes {}: {}", name, other, why));
+    }
 }
 
 // A command is two functions of its options: declare() says what can be given and where it goes, finish() does, once
@@ -369,15 +382,9 @@ void finish(const CLI::App& app, const Words& words, PlanOptions& options) {
     options.words = words;
     if (options.shards && (*options.shards < 1 || *options.shards > most_shards))
         refuse("--shards", std::to_string(*options.shards), fmt::format("a number from 1 to {}", most_shards));
-    if (!options.extend) {
-        if (app.count("SCENE") == 0) throw Error(ExitCode::usage, "SCENE is required (see vkcppm plan --help)");
-        return;
-    }
-    const Words with{"-o", "--extend", "--quiet"};
-    for (const CLI::Option* option : app.get_options()) {
-        if (option->count() > 0 && std::ranges::find(with, option->get_name()) == with.end())
-            throw Error(ExitCode::usage, fmt::format("--extend excludes {}: it is the job's", option->get_name()));
-    }
+    require_alone(app, "--extend", {"-o", "--quiet"}, "it is the job's");
+    if (!options.extend && app.count("SCENE") == 0)
+        throw Error(ExitCode::usage, "SCENE is required (see vkcppm plan --help)");
 }
 
 void declare(CLI::App& app, ShardOptions& options) {
@@ -546,7 +553,8 @@ void declare(CLI::App& app, CheckOptions& options) {
     app.add_flag("--json", options.json, "Print JSON");
 }
 
-void finish(const CLI::App&, const Words&, CheckOptions& options) {
+void finish(const CLI::App& app, const Words&, CheckOptions& options) {
+    require_alone(app, "--update", {"IMAGE", "REFERENCE"}, "the picture is not checked");
     const CheckSettings& settings = options.settings;
     if (settings.level && !(*settings.level > 0.0 && *settings.level < 1.0))
         throw Error(ExitCode::usage, fmt::format("--level {:g} is not between 0 and 1", *settings.level));
@@ -586,13 +594,14 @@ std::string likely_option(const CLI::App& app, const std::string& word) {
     const std::string asked = word.substr(0, word.find('='));
     std::string likely;
     if (!asked.starts_with("--") || asked.size() < 5) return likely;
-    std::size_t least = 3;  // slips
+    std::size_t least = 3;              // slips
+    constexpr std::size_t letters = 3;  // of a name for each slip
     for (const CLI::Option* option : app.get_options()) {
         for (const std::string& long_name : option->get_lnames()) {
             const std::string name = "--" + long_name;
             const bool begins = name.starts_with(asked) || asked.starts_with(name);
             const std::size_t slips = begins ? 1 : edit_distance(asked, name);
-            if (slips >= least) continue;
+            if (slips >= least || slips * letters > long_name.size()) continue;
             least = slips;
             likely = name;
         }
@@ -648,6 +657,10 @@ template <typename T> Options read(const Command& command, const Words& words) {
         return TextOptions{std::string(version.what()) + "\n"};
     } catch (const CLI::ParseError& error) {
         wrong = what_is_wrong(app, error.what());
+    }
+    for (const CLI::Option* option : app.get_options()) {
+        const Words results = option->count() > 0 && wrong.empty() ? option->results() : Words();
+        if (std::ranges::find(results, "") != results.end()) wrong = option->get_name() + " is empty";
     }
     if (!wrong.empty()) throw Error(ExitCode::usage, fmt::format("{} (see {} --help)", wrong, app.get_name()));
     finish(app, words, options);
