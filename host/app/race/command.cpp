@@ -262,11 +262,12 @@ void execute(const RaceOptions& options) {
     const Display display = display_of(options.display, reference, input.reference.string(), options.quiet);
     const RacePictures pictures = race_pictures(result, reference, display);
     const nlohmann::ordered_json json = race_json(options, input, result, pictures);
-    write_pictures(options, input, result, reference, pictures);
+    // What took the time comes first: a disk that fills up costs the pictures, which the page has, too.
     write_file(options.folder / "curves.csv", curves_csv(result));
     write_file(options.folder / "race.json", json_text(json, 2) + "\n");
     const fs::path page = options.folder / "index.html";
     write_file(page, race_page(json, pictures));
+    write_pictures(options, input, result, reference, pictures);
     if (result.interrupted) {
         print_message("interrupted: wrote what there is to " + page.string());
     } else if (!options.quiet) {
