@@ -307,6 +307,11 @@ PilotOnDisk read_pilot(const Job& job) {
     return {{job.pilot, std::move(checkpoint.state)}, std::move(checkpoint.report)};
 }
 
+bool has_pilot(const Job& job) {
+    const auto read = unless_absent([&] { return read_pilot(job).report; });
+    return std::holds_alternative<Report>(read) && !fault_of(job, cuts_of(job).front());
+}
+
 fs::path slice_file(const Job& job, const Cut& cut) { return job.folder / fmt::format("slice_{:04}.sums", cut.number); }
 
 void write_slice(const Job& job, const Cut& cut, const Slice& slice) {

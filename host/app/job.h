@@ -75,6 +75,9 @@ struct PilotOnDisk {
 };
 PilotOnDisk read_pilot(const Job& job);
 
+/// Whether all that `vkcppm plan` renders is there and whole. Throws Error(usage) where it is of another job.
+bool has_pilot(const Job& job);
+
 std::filesystem::path slice_file(const Job& job, const Cut& cut);
 void write_slice(const Job& job, const Cut& cut, const Slice& slice);
 

@@ -64,7 +64,8 @@ void execute(const MergeOptions& options) {
             const std::string what =
                 fmt::format("{}{} {}: {}", name_of(cut), shard.empty() ? "" : " of " + shard,
                             fault->code() == ExitCode::no_input ? "is missing" : "is broken", fault->what());
-            if (options.complete || cut.number == 0) throw Error(fault->code(), what);
+            if (cut.number == 0) throw Error(fault->code(), what + ": the command that planned the job mends it");
+            if (options.complete) throw Error(fault->code(), what);
             print_message("warning: " + what);
             ++missing;
             continue;

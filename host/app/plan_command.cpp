@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -105,10 +107,16 @@ void execute(const PlanOptions& options) {
     check_outputs({scene.inputs.begin(), scene.inputs.end()}, outputs, false);
     tell_warnings(scene, options.scene);
     const Settings settings = resolve_settings(options.settings, scene);
-    if (is_job(options.job)) {
-        require_planned(read_job(options.job), options, scene, settings);
-        if (!options.quiet) print_message(fmt::format("{} is planned already", options.job.string()));
-        return;
+    const std::optional<Job> there = is_job(options.job) ? std::optional(read_job(options.job)) : std::nullopt;
+    if (there) {
+        require_planned(*there, options, scene, settings);
+        if (has_pilot(*there)) {
+            if (!options.quiet) print_message(fmt::format("{} is planned already", options.job.string()));
+            return;
+        }
+        print_message(
+            fmt::format("warning: the pilot of {} is missing or broken: it is rendered again", options.job.string()));
+        job.ends = there->ends;
     }
     Device device(options.device);
     const PipelineCache cache(device, options.device.cache);

@@ -143,7 +143,11 @@ TEST_F(ManyMachines, WhatIsMissingIsToldAndTheRestIsAdded) {
     EXPECT_TRUE(bytes("again.exr") == bytes("whole.exr"));
     // No picture is one without the pilot.
     fs::remove(folder_ / "job" / "slice_0000.sums");
-    expect_failure(merge("job", "none.exr"), 66, {"the pilot", "missing"});
+    expect_failure(merge("job", "none.exr"), 66, {"the pilot", "missing", "planned the job"});
+    write_bytes(folder_ / "job" / "pilot.ckpt", "nothing");
+    plan("job", {"--shards", "2"});
+    expect_done(merge("job", "mended.exr", {"--complete"}));
+    EXPECT_TRUE(bytes("mended.exr") == bytes("whole.exr"));
 }
 
 TEST_F(ManyMachines, AnotherSeedSceneOrPilotIsRefused) {
