@@ -6,6 +6,8 @@
 #include <cstring>
 #include <string>
 
+#include <unistd.h>
+
 #include "core/error.h"
 
 namespace vkcppm {
@@ -21,6 +23,8 @@ void print_message(std::string_view message) {
     std::replace_if(
         line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
     line += '\n';
+    // On a terminal it takes the row of a progress line, which begins anew below.
+    if (::isatty(STDERR_FILENO) == 1) line.insert(0, "\r\x1b[K");
     std::fputs(line.c_str(), stderr);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 
 #include "app/options.h"
 
@@ -26,6 +27,13 @@ std::string error_text(const Progress& progress) {
     const LatestError& error = *progress.error;
     std::string text = fmt::format(", {} {:.3g}", error.metric->name, error.value);
     return error.iterations == progress.iterations_done ? text : text + fmt::format(" after {}", error.iterations);
+}
+
+/// As much of it as a row of the terminal holds: of a longer one every update would leave rows behind.
+std::string in_a_row(const std::string& text, std::FILE* terminal) {
+    winsize size{};
+    if (::ioctl(::fileno(terminal), TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return text;
+    return text.substr(0, size.ws_col - 1u);
 }
 
 }  // namespace
@@ -75,7 +83,7 @@ void ProgressLine::update(double wall_seconds, const std::string& text) {
     const double interval = terminal_ ? terminal_interval : plain_interval;
     if (last_ && wall_seconds - *last_ < interval) return;
     last_ = wall_seconds;
-    write(text);
+    write(terminal_ ? in_a_row(text, stream_) : text);
     open_ = terminal_;
 }
 

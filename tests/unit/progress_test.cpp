@@ -1,8 +1,15 @@
 #include "app/progress.h"
 
+#include <cstdio>
+#include <cstdlib>
 #include <string>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include "app/console.h"
 
 namespace vkcppm {
 namespace {
@@ -91,6 +98,36 @@ TEST(Progress, RewritesItsLineOnATerminalAndEndsIt) {
               "\r1/4 iterations (25 %), 3 s left\x1b[K"
               "\r3/4 iterations (75 %), 1 s left\x1b[K"
               "\r4 iterations in 4.0 s\x1b[K\n");
+}
+
+/// What `use` writes to standard error where that is a terminal of so many columns.
+template <typename Use> std::string on_a_terminal(unsigned short columns, Use&& use) {
+    const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
+    if (terminal < 0 || ::grantpt(terminal) != 0 || ::unlockpt(terminal) != 0) return "there is no terminal";
+    const int end = ::open(::ptsname(terminal), O_RDWR | O_NOCTTY);
+    const winsize size{24, columns, 0, 0};
+    EXPECT_EQ(::ioctl(end, TIOCSWINSZ, &size), 0);
+    const int standard_error = ::dup(STDERR_FILENO);
+    ::dup2(end, STDERR_FILENO);
+    use();
+    ::dup2(standard_error, STDERR_FILENO);
+    std::string text(1000, '\0');
+    text.resize(std::size_t(::read(terminal, text.data(), text.size())));
+    for (const int descriptor : {standard_error, end, terminal}) ::close(descriptor);
+    return text;
+}
+
+TEST(Progress, KeepsToARowOfATerminalWhichAMessageTakes) {
+    const std::string text = on_a_terminal(20, [] {
+        ProgressLine line(stderr, true, std::nullopt);
+        line.update({1, 4, 1.0});
+        print_message("warning: the viewer is gone");
+        line.finish({4, 4, 4.0});
+    });
+    EXPECT_EQ(text,
+              "\r1/4 iterations (25 \x1b[K"
+              "\r\x1b[Kwarning: the viewer is gone\r\n"
+              "\r4 iterations in 4.0 s\x1b[K\r\n");
 }
 
 TEST(Progress, EndsAnOpenLineWhereTheRenderThrows) {
