@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "support/files/files.h"
+#include "support/files/temporary_folder.h"
+
 namespace vkcppm {
 namespace {
 
@@ -19,6 +22,7 @@ TEST(DecodeDataUri, ReadsTheVectorsOfRfc4648) {
     EXPECT_EQ(decoded("data:;base64,Zm9v"), "foo");
     EXPECT_EQ(decoded("data:text/plain;base64,Zm9vYmE="), "fooba");
     EXPECT_EQ(decoded("data:any/thing;base64,+/+/"), "\xfb\xff\xbf");
+    EXPECT_EQ(decoded("data:any/thing;base64,-_-_"), "\xfb\xff\xbf") << "section 5";
 }
 
 TEST(DecodeDataUri, ReadsPercentEncodedData) {
@@ -55,6 +59,15 @@ TEST(ResolveUri, TakesRelativePathsAlone) {
                             "http://example.com/a.bin", "a%00.bin"}) {
         EXPECT_EQ(resolve_uri("/scenes", uri), std::nullopt) << uri;
     }
+}
+
+TEST(ResolveUri, FindsAFileThatIsCalledAsTheUriIsWritten) {
+    const test::TemporaryFolder folder;
+    test::write_bytes(folder / "a%20b.bin", "x");
+    EXPECT_EQ(resolve_uri(folder.path(), "a%20b.bin"), folder / "a%20b.bin");
+    test::write_bytes(folder / "a b.bin", "x");
+    EXPECT_EQ(resolve_uri(folder.path(), "a%20b.bin"), folder / "a b.bin") << "what it means comes first";
+    EXPECT_EQ(resolve_uri(folder.path(), "%2Fetc/passwd"), std::nullopt);
 }
 
 }  // namespace

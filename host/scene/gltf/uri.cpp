@@ -9,13 +9,13 @@ namespace vkcppm {
 
 namespace {
 
-/// The six bits of a base64 digit, or -1.
+/// The six bits of a base64 digit, or -1. Also of the alphabet for URLs and file names (RFC 4648, section 5).
 int base64_digit(char c) {
     if (c >= 'A' && c <= 'Z') return c - 'A';
     if (c >= 'a' && c <= 'z') return c - 'a' + 26;
     if (c >= '0' && c <= '9') return c - '0' + 52;
-    if (c == '+') return 62;
-    if (c == '/') return 63;
+    if (c == '+' || c == '-') return 62;
+    if (c == '/' || c == '_') return 63;
     return -1;
 }
 
@@ -63,6 +63,14 @@ bool is_word(std::string_view text, std::string_view word) {
     return std::ranges::equal(text, word, {}, [](char c) { return char(std::tolower(static_cast<unsigned char>(c))); });
 }
 
+/// The relative path that `name` is, below `folder`; none where it is none.
+std::optional<std::filesystem::path> below(const std::filesystem::path& folder, const std::string& name) {
+    if (name.empty() || name.find('\0') != std::string::npos) return std::nullopt;
+    const auto path = std::filesystem::path(name).lexically_normal();
+    if (path.is_absolute()) return std::nullopt;
+    return folder / path;
+}
+
 }  // namespace
 
 bool is_data_uri(std::string_view uri) { return is_word(uri.substr(0, 5), "data:"); }
@@ -84,11 +92,12 @@ std::optional<std::filesystem::path> resolve_uri(const std::filesystem::path& fo
     if (colon != std::string_view::npos && uri[colon] == ':') return std::nullopt;  // a scheme such as http:
     std::string separated(uri);
     std::ranges::replace(separated, '\\', '/');  // of programs on Windows
-    const std::string decoded = percent_decode(separated);
-    if (decoded.empty() || decoded.find('\0') != std::string::npos) return std::nullopt;
-    const auto path = std::filesystem::path(decoded).lexically_normal();
-    if (path.is_absolute()) return std::nullopt;
-    return folder / path;
+    const auto decoded = below(folder, percent_decode(separated)), as_written = below(folder, separated);
+    // Some programs call the file itself by the encoded name.
+    std::error_code error;
+    const bool is_as_written = decoded && as_written && !std::filesystem::exists(*decoded, error) &&
+                               std::filesystem::exists(*as_written, error);
+    return is_as_written ? as_written : decoded;
 }
 
 }  // namespace vkcppm
