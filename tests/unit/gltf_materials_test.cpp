@@ -357,19 +357,26 @@ TEST(GltfTexture, TakesTheWebpWhereThereAreTwo) {
     const Scene both = load(builder);
     EXPECT_EQ(both.images.at(base_color_texture(both).image).rgba, texel);
     EXPECT_EQ(warnings_with(both, {"webp"}), 0) << all_warnings(both);
-    // What is no WebP, or is not there, is as if the program could not read any.
+    // What is no WebP, or breaks off behind its header, or is not there, is as if the program could not read any.
+    std::vector<std::uint8_t> noise(4 * 64 * 64);
+    for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = std::uint8_t(i * i * i >> 5);
+    std::string cut = test::encode_webp({64, 64}, noise);
+    cut.resize(cut.size() / 2);
     GltfBuilder broken = builder;
-    broken.document["images"][0] = {{"uri", test::data_uri("RIFF\1\1\1\1WEBPVP8 broken", "image/webp")}};
-    const Scene fallback = load(broken);
-    EXPECT_EQ(fallback.images.at(base_color_texture(fallback).image).rgba,
-              std::vector<std::uint8_t>(red.begin(), red.end()));
-    EXPECT_ONE_WARNING(fallback, "textures[1]", "WebP cannot be read");
-    broken.document["textures"][texture].erase("source");
-    const Scene without = load(broken);
-    EXPECT_FALSE(without.materials.at(0).base_color_texture);
-    EXPECT_ONE_WARNING(without, "textures[1]", "WebP cannot be read", "ignored");
-    broken.document["extensionsRequired"] = {"EXT_texture_webp"};
-    expect_bad_scene(broken.gltf(), {"images[0] is unreadable", "broken WebP"});
+    for (const std::string& bytes : {std::string("RIFF\1\1\1\1WEBPVP8 broken"), cut}) {
+        broken = builder;
+        broken.document["images"][0] = {{"uri", test::data_uri(bytes, "image/webp")}};
+        const Scene fallback = load(broken);
+        EXPECT_EQ(fallback.images.at(base_color_texture(fallback).image).rgba,
+                  std::vector<std::uint8_t>(red.begin(), red.end()));
+        EXPECT_EQ(fallback.images.size(), 1u);
+        EXPECT_ONE_WARNING(fallback, "images[0] (broken WebP", "unreadable");
+        broken.document["textures"][texture].erase("source");
+        const Scene without = load(broken);
+        EXPECT_FALSE(without.materials.at(0).base_color_texture);
+        EXPECT_TRUE(without.images.empty());
+        EXPECT_ONE_WARNING(without, "images[0] (broken WebP", "unreadable");
+    }
     broken = builder;
     broken.document["images"][0] = {{"uri", "gone.webp"}};
     const Scene absent = load(broken);
@@ -555,12 +562,31 @@ TEST(HostileImage, IsRefusedByALineThatNamesIt) {
     expect_bad_scene(with_image({{"uri", "a.png"}, {"bufferView", 0}}).gltf(), {"images[0] is", "either a uri or"});
     expect_bad_scene(with_image({{"bufferView", 9}}).gltf(), {"images[0].bufferView is 9", "bufferViews has 3"});
     expect_bad_scene(with_image({{"uri", 7}}).gltf(), {"images[0].uri is 7", "string"});
-    expect_bad_scene(with_image({{"bufferView", 0}}).gltf(), {"images[0] is unreadable", "neither PNG, JPEG nor WebP"});
+}
+
+TEST(GltfImage, ABrokenOneCostsItsTexturesAndNoOthers) {
+    const auto expect_none = [](const GltfBuilder& builder, const char* object, const char* why) {
+        const Scene scene = load(builder);
+        EXPECT_FALSE(scene.materials.at(0).base_color_texture);
+        EXPECT_TRUE(scene.images.empty());
+        EXPECT_ONE_WARNING(scene, object, why, "unreadable, its textures do without it");
+    };
+    expect_none(with_image({{"bufferView", 0}}), "images[0]", "neither PNG, JPEG nor WebP");
     const std::string png = test::one_texel_png(red);
-    expect_bad_scene(with_image({{"uri", test::data_uri(png.substr(0, 45), "image/png")}}).gltf(),
-                     {"images[0] is unreadable", "broken PNG"});
+    const json broken = {{"uri", test::data_uri(png.substr(0, 45), "image/png")}};
+    expect_none(with_image(broken), "images[0]", "broken PNG");
     // A file beside the scene is named as well: here the scene itself.
-    expect_bad_scene(with_image({{"uri", "hostile.gltf"}}).gltf(), {"images[0] (\"hostile.gltf\") is unreadable"});
+    expect_none(with_image({{"uri", "scene.gltf"}}), "images[0] (\"scene.gltf\"", "neither PNG");
+
+    GltfBuilder builder = with_image(broken);
+    builder.texture(test::one_texel_png(green));
+    builder.document["materials"][0]["normalTexture"]["index"] = 1;
+    const Scene scene = load(builder);
+    EXPECT_FALSE(scene.materials.at(0).base_color_texture);
+    ASSERT_TRUE(scene.materials.at(0).normal_texture);
+    EXPECT_EQ(scene.images.at(scene.materials[0].normal_texture->image).rgba,
+              std::vector<std::uint8_t>(green.begin(), green.end()));
+    EXPECT_EQ(scene.images.size(), 1u);
 }
 
 /// An all-black PNG.

@@ -43,6 +43,12 @@ tinygltf::Model parse_model(const GltfFile& file) {
     const std::size_t no_view = document["bufferViews"].size();
     document["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 1}});
     for (json& accessor : document["accessors"]) accessor.emplace("bufferView", no_view);
+    // It also refuses spot lights without the object "spot", all of whose members have defaults.
+    if (const json::json_pointer lights("/extensions/KHR_lights_punctual/lights"); document.contains(lights)) {
+        for (json& light : document[lights]) {
+            if (light["type"] == "spot") light.emplace("spot", json::object());
+        }
+    }
     const std::string text = document.dump();
     if (text.size() > INT32_MAX) {
         bad_scene(file.name, "the size of the JSON", fmt::to_string(text.size()),
@@ -94,7 +100,9 @@ Scene read_scene(GltfFile& file, tinygltf::Model& model, const GltfOptions& opti
     std::ranges::copy_if(nodes, std::back_inserter(visible), &PlacedNode::is_visible);
     GltfSkins skins(file, accessors, nodes, warnings);
     scene.materials = read_materials(file, used_materials(file, model, visible), images, warnings);
-    scene.images = images.take_images();
+    GltfImages::Taken taken = images.take_images();
+    place_images(scene.materials, taken.at);
+    scene.images = std::move(taken.images);
     scene.hash = hash_of(options, images.hash());
     scene.inputs = file.files;
     add_meshes(file, model, accessors, skins, visible, options.sharing, scene, warnings);

@@ -70,7 +70,9 @@ std::optional<std::uint32_t> GltfImages::index(std::size_t image, std::optional<
     return found->second;
 }
 
-/// The place of the picture among those to decode; none, with a warning, where its format is foreign.
+constexpr const char* unreadable = "it is unreadable, its textures do without it";
+
+/// The place of the picture among those to decode; none, with a warning, where its format is foreign or unknown.
 std::optional<std::uint32_t> GltfImages::add(Source source) {
     const std::string &name = source.name, &object = source.object;
     const std::span<const std::uint8_t> bytes = source.bytes;
@@ -101,14 +103,16 @@ std::optional<std::uint32_t> GltfImages::add(Source source) {
     } catch (const Error&) {
         throw;
     } catch (const std::runtime_error& error) {
-        bad_scene(file_.name, object, "unreadable", error.what());
+        warnings_.add(unreadable, fmt::format("{} ({})", object, error.what()));
+        return std::nullopt;
     }
 }
 
-std::vector<TextureImage> GltfImages::take_images() {
+/// Decodes the pictures from that place on. [all places] why one is broken; empty where it is not.
+std::vector<std::string> GltfImages::decode_from(std::size_t first) {
     check_room(texels_, bytes_a_texel, "texels", file_.name);
-    std::vector<std::string> broken(images_.size()), flaws(images_.size());  // why; empty: it is not
-    tbb::parallel_for(std::size_t(0), images_.size(), [&](std::size_t i) {
+    std::vector<std::string> broken(images_.size()), flaws(images_.size());
+    tbb::parallel_for(first, images_.size(), [&](std::size_t i) {
         try {
             Picture picture = decode_picture(sources_[i].bytes);
             images_[i].rgba = std::move(picture.rgba);
@@ -123,12 +127,39 @@ std::vector<TextureImage> GltfImages::take_images() {
             broken[i] = error.what();
         }
     });
-    for (std::size_t i = 0; i < broken.size(); ++i) {
-        if (!broken[i].empty()) bad_scene(file_.name, sources_[i].object, "unreadable", broken[i]);
-        if (flaws[i].empty()) continue;
-        warnings_.add("it is damaged, what can be read is used", fmt::format("{} ({})", sources_[i].object, flaws[i]));
+    for (std::size_t i = first; i < images_.size(); ++i) {
+        const std::string& why = broken[i].empty() ? flaws[i] : broken[i];
+        if (why.empty()) continue;
+        warnings_.add(broken[i].empty() ? "it is damaged, what can be read is used" : unreadable,
+                      fmt::format("{} ({})", sources_[i].object, why));
     }
-    return std::move(images_);
+    return broken;
+}
+
+GltfImages::Taken GltfImages::take_images() {
+    std::vector<std::optional<std::uint32_t>> used;  // [places] instead of each
+    for (std::size_t first = 0; first < images_.size();) {
+        const std::vector<std::string> broken = decode_from(first);
+        const std::size_t last = images_.size();
+        for (; first < last; ++first) {
+            used.push_back(std::uint32_t(first));
+            if (broken[first].empty()) continue;
+            used.back() = std::nullopt;
+            const std::optional<double> glossiness = sources_[first].glossiness;
+            if (const auto beside = sources_[first].beside) used.back() = index(*beside, glossiness);
+        }
+    }
+    Taken taken;
+    taken.at.resize(images_.size());
+    for (std::size_t i = 0; i < images_.size(); ++i) {
+        if (used[i] != i) continue;
+        taken.at[i] = std::uint32_t(taken.images.size());
+        taken.images.push_back(std::move(images_[i]));
+    }
+    for (std::size_t i = 0; i < images_.size(); ++i) {
+        if (used[i] && used[i] != i) taken.at[i] = taken.at[*used[i]];
+    }
+    return taken;
 }
 
 }  // namespace vkcppm

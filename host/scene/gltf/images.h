@@ -21,16 +21,23 @@ public:
     GltfImages(const GltfFile& file, GltfViews& views, Warnings& warnings);
 
     /// The place of images[i] among those to decode, the next one on its first use; images with one source share it.
-    /// None, with a warning, where its file is not there, lies outside of the file's root or is in a format that only
-    /// an extension allows (KTX2, DDS): the factor alone is a picture that still says something.
+    /// None, with a warning, where its file is not there, lies outside of the file's root, is in a format that only an
+    /// extension allows (KTX2, DDS) or is unreadable: the factor alone is a picture that still says something.
     /// glossiness: the factor of that in alpha, of which the image is to hold the roughness, 1 less it, in green.
-    /// Throws Error(bad_scene) where the image has no source or two, is broken, or is too large, alone or with the
-    /// others.
+    /// Throws Error(bad_scene) where the image has no source or two or is too large, alone or with the others.
     std::optional<std::uint32_t> index(std::size_t image, std::optional<double> glossiness = {});
 
-    /// Decodes all, each once, on all cores, and hands them over in the order of index(). Throws Error(bad_scene) where
-    /// one is broken: the first; where memory is too little for them.
-    std::vector<TextureImage> take_images();
+    /// Names images[i], which is looked at where that at `place`, of index(), turns out to be broken.
+    void set_beside(std::uint32_t place, std::size_t image) { sources_[place].beside = image; }
+
+    struct Taken {
+        std::vector<TextureImage> images;
+        // [places of index()] into `images`; none, with a warning, where it is broken.
+        std::vector<std::optional<std::uint32_t>> at;
+    };
+
+    /// Decodes all, each once, on all cores. Throws Error(bad_scene) where memory is too little for them.
+    Taken take_images();
 
     /// FNV-1a of the file's hash and of each external image's bytes.
     std::uint64_t hash() const { return hash_; }
@@ -43,8 +50,10 @@ private:
         std::vector<std::uint8_t> own_bytes;
         std::span<const std::uint8_t> bytes;  // those, or of a bufferView
         std::optional<double> glossiness{};
+        std::optional<std::size_t> beside{};  // of the file's images, see set_beside
     };
     std::optional<std::uint32_t> add(Source source);
+    std::vector<std::string> decode_from(std::size_t first);
 
     const GltfFile& file_;
     GltfViews& views_;

@@ -157,8 +157,8 @@ private:
                           fmt::format("textures[{}] ({})", index, member(name)));
             return std::nullopt;
         }
-        const std::optional<std::uint32_t> image = &named == &webp ? image_of_webp(source, webp, index, glossiness)
-                                                                   : images_.index(image_number(source), glossiness);
+        const std::optional<std::uint32_t> image =
+            &named == &webp ? image_of_webp(source, webp, glossiness) : images_.index(image_number(source), glossiness);
         if (!image) return std::nullopt;
 
         Texture texture;
@@ -176,20 +176,14 @@ private:
 
     static std::size_t image_number(const json& source) { return source["source"].get<std::size_t>(); }
 
-    /// The image of textures[index] that EXT_texture_webp names; where it is not there, or cannot be read and the file
-    /// does not require the extension, the one beside it, if any.
-    std::optional<std::uint32_t> image_of_webp(const json& source, const json& webp, std::size_t index,
-                                               std::optional<double> glossiness) {
-        const bool has_other = source.contains("source");
-        try {
-            if (const auto image = images_.index(image_number(webp), glossiness)) return image;
-        } catch (const Error&) {
-            if (requires_extension(file_, "EXT_texture_webp")) throw;
-            warnings_.add(
-                fmt::format("its WebP cannot be read, {}", has_other ? "the image beside it is used" : "it is ignored"),
-                fmt::format("textures[{}]", index));
-        }
-        return has_other ? images_.index(image_number(source), glossiness) : std::nullopt;
+    /// The image of a texture that EXT_texture_webp names; where it is not there, or cannot be read, the one beside it,
+    /// if any.
+    std::optional<std::uint32_t> image_of_webp(const json& source, const json& webp, std::optional<double> glossiness) {
+        const std::optional<std::uint32_t> image = images_.index(image_number(webp), glossiness);
+        if (!source.contains("source")) return image;
+        if (!image) return images_.index(image_number(source), glossiness);
+        images_.set_beside(*image, image_number(source));
+        return image;
     }
 
     /// KHR_texture_transform: scaled, then turned, then moved. A positive angle turns the coordinates counter-clockwise
@@ -238,21 +232,41 @@ std::vector<Material> read_materials(const GltfFile& file, const std::vector<boo
     return materials;
 }
 
-VertexNeeds vertex_needs(const Material& material) {
-    VertexNeeds needs;
-    const std::optional<Texture>* textures[] = {
-        &material.base_color_texture,
-        &material.metallic_roughness_texture,
-        &material.normal_texture,
-        &material.emissive_texture,
+namespace {
+
+/// Calls visit(texture) of every texture that a material may have.
+template <typename AMaterial, typename Visit> void for_textures(AMaterial& material, const Visit& visit) {
+    for (auto* texture : {
+             &material.base_color_texture,
+             &material.metallic_roughness_texture,
+             &material.normal_texture,
+             &material.emissive_texture,
 #define EXTENSION(name, ...) __VA_ARGS__
 #define TEXTURE(NUMBER, member, json, words, encoding, where) &material.member,
 #define NORMALS(NUMBER, member, json, words, scale, where) &material.member,
 #include "scene/material_extensions.h"
-    };
-    for (const std::optional<Texture>* texture : textures) {
-        if (*texture) needs.uv[(*texture)->uv_set] = true;
+         }) {
+        if (*texture) visit(*texture);
     }
+}
+
+}  // namespace
+
+void place_images(std::vector<Material>& materials, const std::vector<std::optional<std::uint32_t>>& at) {
+    for (Material& material : materials) {
+        for_textures(material, [&](std::optional<Texture>& texture) {
+            if (const auto image = at[texture->image]) {
+                texture->image = *image;
+            } else {
+                texture.reset();
+            }
+        });
+    }
+}
+
+VertexNeeds vertex_needs(const Material& material) {
+    VertexNeeds needs;
+    for_textures(material, [&](const std::optional<Texture>& texture) { needs.uv[texture->uv_set] = true; });
     const bool anisotropic = material.anisotropy > 0.0f;
     needs.tangents = material.normal_texture || material.clearcoat_normal_texture || anisotropic;
     // Which coordinates tangents follow from set_tangent of include/surface.glsl knows.
