@@ -63,6 +63,26 @@ TEST(Animation, MovesInAStraightLineAndStandsStillOutside) {
     EXPECT_EQ(test::warnings_with(load_at(builder, "move", 1), {"animations"}), 0);
 }
 
+// At rest the extension changes nothing; in motion what it moves is told of.
+TEST(Animation, OfAnythingElseIsLeftAtRest) {
+    GltfBuilder builder = test::one_triangle();
+    animate(builder, "move", "translation", {0, 1}, {0, 0, 0, 4, 0, 2}, "VEC3", 3);
+    const json pointer = {{"pointer", "/nodes/0/translation"}};
+    builder.document["animations"][0]["channels"][0]["target"] = {{"path", "pointer"},
+                                                                  {"extensions", {{"KHR_animation_pointer", pointer}}}};
+    builder.document["extensionsRequired"] = builder.document["extensionsUsed"] = {"KHR_animation_pointer"};
+    expect_near(test::load(builder).positions.at(1), {1, 0, 0});
+    expect_near(corner(builder, 1), {1, 0, 0});
+    EXPECT_EQ(test::warnings_with(load_at(builder, "move", 0), {"animations[0].channels[0]", "nodes alone"}), 1);
+}
+
+TEST(Animation, WithoutKeyFramesMovesNothing) {
+    GltfBuilder builder = test::one_triangle();
+    animate(builder, "move", "translation", {}, {}, "VEC3", 3);
+    expect_near(corner(builder, 1), {1, 0, 0});
+    EXPECT_EQ(test::warnings_with(load_at(builder, "move", 0), {"animations[0].channels[0]", "no key frames"}), 1);
+}
+
 TEST(Animation, StepsHoldTheirValue) {
     GltfBuilder builder = test::one_triangle();
     animate(builder, "move", "scale", {0, 1}, {1, 1, 1, 3, 1, 1}, "VEC3", 3, "STEP");

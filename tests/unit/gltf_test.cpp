@@ -583,14 +583,26 @@ TEST(Gltf, ReadsAnOrthographicCamera) {
     expect_near(scene.cameras[0].to_world[3], {1, 2, 3}, 1e-12, "position");
     EXPECT_TRUE(scene.warnings.empty()) << all_warnings(scene);
     for (const char* side : {"xmag", "ymag"}) {
-        for (const double size : {0.0, -1.0, 1e300}) {
+        for (const double size : {0.0, 1e300}) {
             json bad = lens;
             bad[side] = size;
             test::expect_bad_scene(
                 with_camera({{"type", "orthographic"}, {"orthographic", bad}}, json::object()).gltf(),
                 {fmt::format("cameras[0].orthographic.{} is", side), "positive"});
         }
+        json negative = lens;
+        negative[side] = -5;
+        const Scene upright = load(with_camera({{"type", "orthographic"}, {"orthographic", negative}}, json::object()));
+        EXPECT_EQ(upright.cameras.at(0).aspect, side == std::string("xmag") ? 2.5 : 0.6);
+        EXPECT_ONE_WARNING(upright, "cameras[0].orthographic", "negative");
     }
+}
+
+TEST(Gltf, IgnoresAnAspectRatioThatIsNone) {
+    const json lens = {{"yfov", 1}, {"znear", 1}, {"aspectRatio", 0}};
+    const Scene scene = load(with_camera({{"type", "perspective"}, {"perspective", lens}}, json::object()));
+    EXPECT_EQ(scene.cameras.at(0).aspect, std::nullopt);
+    EXPECT_ONE_WARNING(scene, "cameras[0].perspective.aspectRatio = 0", "ignored");
 }
 
 TEST(Gltf, FramesASceneWithoutACamera) {
@@ -647,6 +659,10 @@ TEST(Gltf, ReadsTheDefaultsOfLights) {
     EXPECT_EQ(spot.intensity, glm::vec3(1));
     EXPECT_EQ(spot.inner_cone, 0.0);
     EXPECT_NEAR(spot.outer_cone, std::numbers::pi / 4, 1e-9);
+    const Scene bare = load_light({{"type", "spot"}}, json::object());
+    EXPECT_EQ(bare.lights.at(0).inner_cone, 0.0);
+    EXPECT_NEAR(bare.lights.at(0).outer_cone, std::numbers::pi / 4, 1e-9);
+    EXPECT_ONE_WARNING(bare, "lights[0].spot", "missing");
     const PunctualLight sun = load_light({{"type", "directional"}, {"intensity", 3}}, {{"name", "sun"}}).lights[0];
     EXPECT_EQ(sun.kind, PunctualLight::Kind::directional);
     EXPECT_EQ(sun.name, "sun");

@@ -39,7 +39,7 @@ struct SparseBytes {
 
 /// An accessor whose ranges have been checked with elements_fit.
 struct AccessorView {
-    std::size_t count = 0;  // >= 1
+    std::size_t count = 0;
     ComponentType type = ComponentType::f32;
     bool normalized = false;           // integers map to [0, 1] or [-1, 1] (glTF 2.0, section 3.11)
     std::optional<ElementBytes> base;  // [count]; zeros where absent

@@ -63,6 +63,7 @@ GltfAccessors::Indices GltfAccessors::indices(int accessor) {
 /// `count` elements of `size` bytes from `offset` on in a view, as far apart as it states unless they are packed.
 ElementBytes GltfAccessors::elements(int view, std::size_t offset, std::size_t count, std::size_t size,
                                      const std::string& object, bool packed) {
+    if (count == 0) return {};
     const std::size_t stride = packed || views_.stride(view) == 0 ? size : views_.stride(view);
     if (stride < size) {
         bad_scene(file_.name, fmt::format("bufferViews[{}].byteStride", view), fmt::to_string(stride),

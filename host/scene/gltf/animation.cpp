@@ -151,7 +151,9 @@ void pose_nodes(GltfFile& file, tinygltf::Model& model, GltfAccessors& accessors
             const auto path = target["path"].get<std::string>();
             const std::string object = fmt::format("animations[{}].channels[{}]", a, c);
             if (path == "pointer" || !target.contains("node")) {
-                warnings.add("ignored, it moves no node", object);
+                warnings.add(
+                    path == "pointer" ? "ignored, this program moves nodes alone" : "ignored, it moves no node",
+                    object);
                 continue;
             }
             const int node = target["node"].get<int>();
@@ -164,6 +166,10 @@ void pose_nodes(GltfFile& file, tinygltf::Model& model, GltfAccessors& accessors
             const std::size_t width = is_weights ? target_count(model, node) : path == "rotation" ? 4 : 3;
             if (width == 0) {
                 warnings.add("ignored, its node has no morph targets", object);
+                continue;
+            }
+            if (accessors.count(samplers[sampler]["input"].get<int>()) == 0) {
+                warnings.add("ignored, it has no key frames", object);
                 continue;
             }
             const Channel channel(file, accessors, samplers[sampler], object, width, is_weights, warnings);

@@ -52,7 +52,11 @@ std::optional<Camera> read_camera(const GltfFile& file, const tinygltf::Model& m
     camera.to_world = glm::dmat4(*frame);
     camera.to_world[3] = to_world[3];
     if (is_orthographic) {
-        const double xmag = source.orthographic.xmag, ymag = source.orthographic.ymag;
+        // glTF would rather have them positive, and leaves open what else they mean.
+        const double xmag = std::abs(source.orthographic.xmag), ymag = std::abs(source.orthographic.ymag);
+        if (source.orthographic.xmag < 0.0 || source.orthographic.ymag < 0.0) {
+            warnings.add("negative, the picture is not mirrored", object + ".xmag or .ymag");
+        }
         const auto is_length = [](double mag) { return mag >= FLT_MIN && mag <= FLT_MAX; };
         require(is_length(xmag), "xmag", xmag, "it must be positive and within floats");
         require(is_length(ymag), "ymag", ymag, "it must be positive and within floats");
@@ -63,8 +67,12 @@ std::optional<Camera> read_camera(const GltfFile& file, const tinygltf::Model& m
     camera.yfov = source.perspective.yfov;
     require(camera.yfov > 0.0 && camera.yfov < std::numbers::pi, "yfov", camera.yfov, "it must lie between 0 and pi");
     if (file.document["cameras"][node.camera]["perspective"].contains("aspectRatio")) {
-        camera.aspect = source.perspective.aspectRatio;
-        require(*camera.aspect > 0.0, "aspectRatio", *camera.aspect, "it must be positive");
+        const double aspect = source.perspective.aspectRatio;
+        if (aspect > 0.0) {
+            camera.aspect = aspect;
+        } else {
+            warnings.add("ignored, it must be positive", fmt::format("{}.aspectRatio = {}", object, aspect));
+        }
     }
     return camera;
 }

@@ -270,7 +270,8 @@ GltfFile read_gltf_file(const std::filesystem::path& path, const std::optional<s
         buffer.size = buffers[i]["byteLength"].get<std::size_t>();
         total_size += buffer.size;
         check_size(total_size, "the byteLength of the buffers together", file.name);
-        buffer.bytes = reader.read(i, buffer.absent);
+        // One without bytes is there, whatever its uri is: of an empty one exporters write "data:".
+        buffer.bytes = buffer.size == 0 ? std::make_shared<const Bytes>() : reader.read(i, buffer.absent);
         if (buffer.bytes && buffer.size > buffer.bytes->size()) {
             bad_scene(file.name, fmt::format("buffers[{}].byteLength", i), fmt::to_string(buffer.size),
                       fmt::format("its data has {} bytes", buffer.bytes->size()));

@@ -102,10 +102,11 @@ std::optional<PunctualLight> read_light(const GltfFile& file, const tinygltf::Mo
             return std::nullopt;
         }
     }
-    if (light.kind == PunctualLight::Kind::spot && !read_cone(source.spot, object, light, warnings)) {
-        return std::nullopt;
-    }
     const nlohmann::json& json = file.document["extensions"]["KHR_lights_punctual"]["lights"][light_index];
+    if (light.kind == PunctualLight::Kind::spot) {
+        if (!json.contains("spot")) warnings.add("missing, its cone is the default", object + ".spot");
+        if (!read_cone(source.spot, object, light, warnings)) return std::nullopt;
+    }
     if (light.kind != PunctualLight::Kind::directional && json.contains("range")) {
         if (!(source.range > 0.0)) {
             warnings.add("ignored, it must be greater than 0", fmt::format("{}.range = {}", object, source.range));

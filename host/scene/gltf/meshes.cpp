@@ -168,7 +168,7 @@ private:
             add_primitives(node.index, Placement::of(node.to_world).value_or(identity), scene_.triangles);
             return;
         }
-        for (const glm::dmat4& to_world : instances(file_, accessors_, node)) {
+        for (const glm::dmat4& to_world : instances(file_, accessors_, node, warnings_)) {
             const std::optional<Placement> placement = Placement::of(to_world);
             if (!placement) {
                 warnings_.add("its mesh is dropped, the transform is singular", object);
@@ -221,6 +221,10 @@ private:
             warnings_.add(
                 source.mode < TINYGLTF_MODE_TRIANGLES ? "points and lines are skipped" : "skipped, it has no POSITION",
                 fmt::format("meshes[{}].primitives[{}]", mesh, index));
+            return;
+        }
+        if (triangle_count(source, accessors_) == 0) {
+            warnings_.add("skipped, it has no triangle", fmt::format("meshes[{}].primitives[{}]", mesh, index));
             return;
         }
         const std::uint32_t material = material_index(source);

@@ -18,13 +18,22 @@ using nlohmann::json;
 
 constexpr const char* instancing = "EXT_mesh_gpu_instancing";
 
-/// The rotation of a quaternion (x, y, z, w) of any length, which object() names.
+constexpr glm::dquat no_rotation(1.0, 0.0, 0.0, 0.0);  // glm: w first
+
+/// The rotation of a quaternion (x, y, z, w) of any length, which object() names; none, with a warning, where it is
+/// zero, as exporters leave one that nobody has set.
 template <typename Object>
-glm::dquat unit_rotation(const glm::dvec4& q, const Object& object, const std::string& file) {
+glm::dquat unit_rotation(const glm::dvec4& q, const Object& object, const std::string& file, Warnings& warnings) {
     const double length = glm::length(q);
-    if (!(length > 0.0) || !std::isfinite(length)) {
+    if (length == 0.0) {
+        warnings.add("a quaternion of zeros, taken for no rotation", object());
+        return no_rotation;
+    }
+    if (!std::isfinite(length)) {
         bad_scene(file, object(), fmt::format("({}, {}, {}, {})", q.x, q.y, q.z, q.w), "it must be a unit quaternion");
     }
+    constexpr double rounding = 0.02;  // of bytes, in which glTF has rotations as well
+    if (std::abs(length - 1.0) > rounding) warnings.add("not a unit quaternion, normalised", object());
     return glm::dquat(q.w, q.x, q.y, q.z) / length;  // glm: w first
 }
 
@@ -129,14 +138,12 @@ glm::dmat4 local_transform(const GltfFile& file, const tinygltf::Model& model, i
         return matrix;
     }
     glm::dvec3 translation(0.0), scale(1.0);
-    glm::dquat rotation(1.0, 0.0, 0.0, 0.0);  // glm: w first
+    glm::dquat rotation = no_rotation;
     if (!node.translation.empty()) translation = glm::make_vec3(node.translation.data());
     if (!node.scale.empty()) scale = glm::make_vec3(node.scale.data());
     if (!node.rotation.empty()) {
         const auto object = [&] { return fmt::format("nodes[{}].rotation", index); };
-        const glm::dvec4 given = glm::make_vec4(node.rotation.data());
-        rotation = unit_rotation(given, object, file.name);
-        if (std::abs(glm::length(given) - 1.0) > 1e-3) warnings.add("not a unit quaternion, normalised", object());
+        rotation = unit_rotation(glm::make_vec4(node.rotation.data()), object, file.name, warnings);
     }
     return compose(translation, rotation, scale);
 }
@@ -186,7 +193,8 @@ std::size_t instance_count(const GltfFile& file, const GltfAccessors& accessors,
     return count.value_or(0);
 }
 
-std::vector<glm::dmat4> instances(const GltfFile& file, GltfAccessors& accessors, const PlacedNode& node) {
+std::vector<glm::dmat4> instances(const GltfFile& file, GltfAccessors& accessors, const PlacedNode& node,
+                                  Warnings& warnings) {
     const json* attributes = instance_attributes(file, node.index);
     if (!attributes) return {node.to_world};
     SharedVectors<3> translations, scales;
@@ -200,7 +208,7 @@ std::vector<glm::dmat4> instances(const GltfFile& file, GltfAccessors& accessors
     for (std::size_t i = 0; i < to_world.size(); ++i) {
         const auto object = [&] { return fmt::format("element {} of {}", i, attributes_name(node.index)); };
         const glm::dquat rotation =
-            rotations ? unit_rotation((*rotations)[i], object, file.name) : glm::dquat(1.0, 0.0, 0.0, 0.0);
+            rotations ? unit_rotation((*rotations)[i], object, file.name, warnings) : no_rotation;
         to_world[i] = node.to_world * compose(translations ? (*translations)[i] : glm::dvec3(0.0), rotation,
                                               scales ? (*scales)[i] : glm::dvec3(1.0));
         check_finite(to_world[i], object, file.name);

@@ -27,6 +27,7 @@ std::size_t instance_count(const GltfFile& file, const GltfAccessors& accessors,
 
 /// [instance_count] transforms to the world: the node's after each instance's translation * rotation * scale.
 /// Throws Error(bad_scene) where an instance's transform is not finite.
-std::vector<glm::dmat4> instances(const GltfFile& file, GltfAccessors& accessors, const PlacedNode& node);
+std::vector<glm::dmat4> instances(const GltfFile& file, GltfAccessors& accessors, const PlacedNode& node,
+                                  Warnings& warnings);
 
 }  // namespace vkcppm

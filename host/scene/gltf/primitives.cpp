@@ -69,8 +69,8 @@ const LocalPrimitive& PrimitiveReader::read(int node, int mesh, std::size_t inde
     std::vector<double> weights;
     if (!source.targets.empty()) weights = weights_of(node, mesh);
     if (weights.size() > source.targets.size()) {
-        bad_scene(file_.name, fmt::format("the number of weights of {}", object), fmt::to_string(weights.size()),
-                  fmt::format("it has {} targets", source.targets.size()));
+        warnings_.add("more weights than morph targets, those that are left over are ignored", object);
+        weights.resize(source.targets.size());
     }
     found->second = read_new(source, object, needs, weights);
     if (const JointMatrices* joints = skins_.joints(node)) pose(found->second, source, *joints, object);
@@ -115,7 +115,17 @@ LocalPrimitive PrimitiveReader::read_new(const tinygltf::Primitive& source, cons
     }
     primitive.colors = colors(source, vertices, object);
     // Without normals there are no tangents either (glTF 2.0, section 3.7.2.1).
-    if (needs.tangents && primitive.normals) primitive.tangents = attribute<4>(source, "TANGENT", vertices, object);
+    if (needs.tangents && primitive.normals) {
+        primitive.tangents =
+            morphed(attribute<4>(source, "TANGENT", vertices, object), source, "TANGENT", weights, object);
+    }
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+        for (const auto& [name, accessor] : source.targets[k]) {
+            const bool is_moved = name == "POSITION" || name == "NORMAL" || name == "TANGENT";
+            if (weights[k] == 0.0 || is_moved || name.starts_with('_')) continue;
+            warnings_.add("its morph targets are ignored", fmt::format("{} of {}", name, object));
+        }
+    }
     primitive.triangles = assemble_triangles(source.mode, corner_indices(source, vertices, object));
     return primitive;
 }
@@ -144,20 +154,24 @@ SharedVectors<N> PrimitiveReader::attribute(const tinygltf::Primitive& source, c
     return accessor ? accessors_.vectors<N>(*accessor, name) : nullptr;
 }
 
-/// base + sum of weight * target (glTF 2.0, section 3.7.2.2); the base itself where nothing moves it.
-SharedVectors<3> PrimitiveReader::morphed(const SharedVectors<3>& base, const tinygltf::Primitive& source,
+/// base + sum of weight * target (glTF 2.0, section 3.7.2.2); the base itself where nothing moves it. The fourth
+/// number of tangents, a sign, stays.
+template <int N>
+SharedVectors<N> PrimitiveReader::morphed(const SharedVectors<N>& base, const tinygltf::Primitive& source,
                                           const char* name, const std::vector<double>& weights,
                                           const std::string& object) {
     if (!base || is_all_zero(weights)) return base;
     moved_vectors_ += base->size() * weights.size();
     check_total(moved_vectors_, max_read_vectors, "vectors of morph targets", file_);
-    auto moved = std::make_shared<std::vector<glm::dvec3>>(*base);
+    auto moved = std::make_shared<std::vector<glm::vec<N, double>>>(*base);
     for (std::size_t k = 0; k < weights.size(); ++k) {
         const auto target = source.targets[k].find(name);
         if (weights[k] == 0.0 || target == source.targets[k].end()) continue;
         check_count(target->second, base->size(), fmt::format("{} of {}.targets[{}]", name, object, k));
         const SharedVectors<3>& displacement = accessors_.vectors<3>(target->second, name);
-        for (std::size_t i = 0; i < moved->size(); ++i) (*moved)[i] += weights[k] * (*displacement)[i];
+        for (std::size_t i = 0; i < moved->size(); ++i) {
+            for (int c = 0; c < 3; ++c) (*moved)[i][c] += weights[k] * (*displacement)[i][c];
+        }
     }
     return moved;
 }

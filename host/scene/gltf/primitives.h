@@ -64,7 +64,8 @@ private:
     template <int N>
     SharedVectors<N> attribute(const tinygltf::Primitive& source, const char* name, std::size_t vertices,
                                const std::string& object);
-    SharedVectors<3> morphed(const SharedVectors<3>& base, const tinygltf::Primitive& source, const char* name,
+    template <int N>
+    SharedVectors<N> morphed(const SharedVectors<N>& base, const tinygltf::Primitive& source, const char* name,
                              const std::vector<double>& weights, const std::string& object);
     SharedVectors<2> uv(const tinygltf::Primitive& source, std::size_t set, std::size_t vertices,
                         const std::string& object);

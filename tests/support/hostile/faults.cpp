@@ -119,11 +119,11 @@ const std::vector<Fault>& faults() {
         {"ProjectiveMatrix",
          [](auto& b) { b.document["nodes"][0]["matrix"] = {1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; },
          {"nodes[0].matrix[3] is 0.5", "must be 0"}},
-        {"ZeroRotation",
+        {"OverflowingRotation",
          [](auto& b) {
-             b.document["nodes"][0]["rotation"] = {0, 0, 0, 0};
+             b.document["nodes"][0]["rotation"] = {1e300, 0, 0, 1e300};
          },
-         {"nodes[0].rotation is (0, 0, 0, 0)", "unit"}},
+         {"nodes[0].rotation is (1e+300, 0, 0, 1e+300)", "unit"}},
         {"OverflowingTransform",
          [](auto& b) {
              b.document["nodes"] = {{{"scale", {1e200, 1, 1}}, {"children", {1}}},
@@ -148,7 +148,7 @@ const std::vector<Fault>& faults() {
          {"bufferViews[0].byteOffset is 18446744073709551600"}},
         {"ViewEmpty",
          [](auto& b) { b.document["bufferViews"][0]["byteLength"] = 0; },
-         {"bufferViews[0].byteLength is 0", "1 to"}},
+         {"accessors[0] is 3 elements of 12 bytes", "bufferViews[0] has 0"}},
         {"StrideMultiple",
          [](auto& b) { b.document["bufferViews"][0]["byteStride"] = 13; },
          {"bufferViews[0].byteStride is 13", "multiple of 4"}},
@@ -235,6 +235,12 @@ const std::vector<Fault>& faults() {
              primitive(b)["indices"] = b.accessor(b.view(std::vector<float>{0, 1, 2}), "SCALAR", 5126, 3);
          },
          {"accessors[1].componentType is 5126", "indices"}},
+        {"PositionsEmpty",
+         [](auto& b) {
+             primitive(b)["indices"] = b.u16({0, 1, 2});
+             b.document["accessors"][0]["count"] = 0;
+         },
+         {"accessors[1] element 0", "is 0", "0 vertices"}},
         {"NormalCount",
          [](auto& b) {
              primitive(b)["attributes"]["NORMAL"] = b.float3({{0, 0, 1}});
@@ -276,11 +282,6 @@ const std::vector<Fault>& faults() {
              add_camera(b, {{"yfov", 0}, {"znear", 1}});
          },
          {"cameras[0].perspective.yfov is 0"}},
-        {"Aspect",
-         [](auto& b) {
-             add_camera(b, {{"yfov", 1}, {"znear", 1}, {"aspectRatio", 0}});
-         },
-         {"cameras[0].perspective.aspectRatio is 0", "positive"}},
         {"CameraWithoutProperties",
          [](auto& b) {
              b.add("cameras", {{"type", "perspective"}});
@@ -291,11 +292,6 @@ const std::vector<Fault>& faults() {
              add_light(b, {{"type", "area"}});
          },
          {"lights[0].type is \"area\"", "spot"}},
-        {"SpotWithoutCone",
-         [](auto& b) {
-             add_light(b, {{"type", "spot"}});
-         },
-         {"lights[0].spot is missing"}},
         {"LightColor",
          [](auto& b) {
              add_light(b, {{"type", "point"}, {"color", {1, -1, 1}}});
