@@ -92,9 +92,10 @@ vec3 corner_tangent(Hit hit, Instance at, uint packed) {
     return is_in_instance(hit) ? normalize(linear_to_scene(at, t)) : t;
 }
 
-// The tangent of the triangle at the hit, on its front: that of the file, else the derivative of the point by u.
+// The tangent of the triangle at the hit, on its front: that of the file, else the derivative of the point by u of a
+// texture, as KHR_texture_transform leaves it, or of the first set where texture_number is 0.
 // w: the sign of the bitangent; 0 where there is no tangent to be had.
-vec4 tangent_at(Hit hit, vec3 front_normal, bool second_uv) {
+vec4 tangent_at(Hit hit, uint texture_number) {
     Instance at = instance_of(hit);
     float hand = is_in_instance(hit) ? at.hand : 1.0;  // a mirror turns the bitangent
     if (HAS_TANGENTS) {
@@ -112,8 +113,17 @@ vec4 tangent_at(Hit hit, vec3 front_normal, bool second_uv) {
     vec4 uv0 = texelFetch(texcoords_texels, texel);
     vec4 d1 = texelFetch(texcoords_texels, texel + 1) - uv0;
     vec4 d2 = texelFetch(texcoords_texels, texel + 2) - uv0;
-    vec2 du = second_uv ? vec2(d1.z, d2.z) : vec2(d1.x, d2.x);
-    vec2 dv = second_uv ? vec2(d1.w, d2.w) : vec2(d1.y, d2.y);
+    bool second_uv = false;
+    vec4 rows = vec4(1.0, 0.0, 0.0, 1.0);
+    if (HAS_TEXTURES && texture_number != 0u) {
+        TextureLookup lookup = textures_at(texture_number - 1u);
+        second_uv = (lookup.flags & TEXTURE_SECOND_UV) != 0u;
+        rows = lookup.matrix;
+    }
+    vec2 of_u = second_uv ? vec2(d1.z, d2.z) : vec2(d1.x, d2.x);
+    vec2 of_v = second_uv ? vec2(d1.w, d2.w) : vec2(d1.y, d2.y);
+    vec2 du = rows.x * of_u + rows.y * of_v;
+    vec2 dv = rows.z * of_u + rows.w * of_v;
     float area = du.x * dv.y - du.y * dv.x;
     if (area == 0.0) return vec4(0.0);
     float turn = sign(area);
@@ -125,8 +135,8 @@ vec4 tangent_at(Hit hit, vec3 front_normal, bool second_uv) {
 }
 
 // The unit tangent and bitangent about the normal `front_normal` on the front of the triangle; false: there are none.
-bool tangent_frame(Hit hit, vec3 front_normal, bool second_uv, out vec3 t, out vec3 b) {
-    vec4 tangent = tangent_at(hit, front_normal, second_uv);
+bool tangent_frame(Hit hit, vec3 front_normal, uint texture_number, out vec3 t, out vec3 b) {
+    vec4 tangent = tangent_at(hit, texture_number);
     t = tangent.xyz - front_normal * dot(front_normal, tangent.xyz);
     float length2 = dot(t, t);
     t *= inversesqrt(length2);
@@ -134,15 +144,11 @@ bool tangent_frame(Hit hit, vec3 front_normal, bool second_uv, out vec3 t, out v
     return tangent.w != 0.0 && length2 != 0.0;
 }
 
-bool has_second_uv(uint texture_number) {
-    return texture_number != 0u && (textures_at(texture_number - 1u).flags & TEXTURE_SECOND_UV) != 0u;
-}
-
 // The normal `front_normal` bent by a texel of a normal texture; both normals on the front of the triangle.
 vec3 bent_normal(Hit hit, vec3 front_normal, uint texture_number, float scale, vec3 texel) {
     if (texture_number == 0u) return front_normal;
     vec3 t, b;
-    if (!tangent_frame(hit, front_normal, has_second_uv(texture_number), t, b)) return front_normal;
+    if (!tangent_frame(hit, front_normal, texture_number, t, b)) return front_normal;
     vec3 n = texel * 2.0 - 1.0;
     n.xy *= scale;
     return normalize(n.x * t + n.y * b + n.z * front_normal);
@@ -160,7 +166,7 @@ vec3 bent_clearcoat(Hit hit, vec3 direction, Surface surface, SurfaceMaterial ma
 // in: of the texture coordinates of the normal texture, else of the anisotropy texture, else of the first set. Without
 // such a frame the material has no anisotropy. texel: of the anisotropy texture, where there is one.
 void set_tangent(Hit hit, vec3 texel, inout Surface surface, inout SurfaceMaterial material) {
-    bool second_uv = false;
+    uint of = 0u;
     vec2 direction = vec2(1.0, 0.0);
     if (HAS_TEXTURES && has(material, SURFACE_TEXTURED)) {
         uint number = material.texture[TEXTURE_ANISOTROPY];
@@ -169,12 +175,12 @@ void set_tangent(Hit hit, vec3 texel, inout Surface surface, inout SurfaceMateri
             material.anisotropy.z *= texel.b;
         }
         uint bending = material.texture[TEXTURE_NORMAL];
-        second_uv = has_second_uv(bending != 0u ? bending : number);
+        of = bending != 0u ? bending : number;
     }
     vec2 turn = material.anisotropy.xy;
     direction = vec2(turn.x * direction.x - turn.y * direction.y, turn.y * direction.x + turn.x * direction.y);
     vec3 t, b;
-    bool framed = tangent_frame(hit, surface.front ? surface.normal : -surface.normal, second_uv, t, b);
+    bool framed = tangent_frame(hit, surface.front ? surface.normal : -surface.normal, of, t, b);
     if (framed && direction != vec2(0.0)) {
         surface.tangent = normalize(direction.x * t + direction.y * b);
     } else {

@@ -230,6 +230,10 @@ Scene textured_sheet(std::mt19937& random, bool tangents) {
         m.sheen_roughness = 0.9f;
         m.sheen_color_texture = texture(3, 2);
         m.sheen_roughness_texture = texture(2, 5);
+        // Tangents follow transformed coordinates: turned by a right angle, mirrored, drawn out.
+        const std::array matrices = {glm::mat2(0, 1, -1, 0), glm::mat2(-1, 0, 0, 1), glm::mat2(0.5f, 0, 0, 2)};
+        m.normal_texture->matrix = matrices[i % 3];
+        m.clearcoat_normal_texture->matrix = matrices[(i + 1) % 3];
         // Blue of a normal map is positive.
         for (const auto& t : {m.normal_texture, m.clearcoat_normal_texture}) {
             auto& rgba = scene.images[t->image].rgba;
@@ -299,8 +303,8 @@ TEST_F(Textures, SurfacesAreTheReferences) {
                   &material.iridescence_thickness_texture, &material.sheen_color_texture,
                   &material.sheen_roughness_texture}) {
                 const Extent size = scene.images[(*texture)->image].size;
-                const glm::dvec2 place =
-                    oracle::uv_at(scene, hit, (*texture)->uv_set) * glm::dvec2(size.width, size.height);
+                const glm::dvec2 uv = glm::dmat2((*texture)->matrix) * oracle::uv_at(scene, hit, (*texture)->uv_set);
+                const glm::dvec2 place = uv * glm::dvec2(size.width, size.height);
                 const glm::dvec2 gap = glm::abs(place - glm::round(place));
                 edge = edge || ((*texture)->nearest && std::min(gap.x, gap.y) < 1e-5);
             }
@@ -339,7 +343,8 @@ TEST_F(Textures, SurfacesAreTheReferences) {
             // Where the derivative by u cancels, its direction is rounding.
             const auto sense = [&](const Texture& texture, double& condition) {
                 const auto& uv = scene.uv[texture.uv_set];
-                const glm::dvec2 d1 = uv[v[1]] - uv[v[0]], d2 = uv[v[2]] - uv[v[0]];
+                const glm::dvec2 d1 = texture.matrix * (uv[v[1]] - uv[v[0]]),
+                                 d2 = texture.matrix * (uv[v[2]] - uv[v[0]]);
                 const glm::dvec3 e1 = scene.positions[v[1]] - scene.positions[v[0]];
                 const glm::dvec3 e2 = scene.positions[v[2]] - scene.positions[v[0]];
                 const double whole = glm::length(e1) * std::abs(d2.y) + glm::length(e2) * std::abs(d1.y);

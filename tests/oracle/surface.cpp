@@ -38,24 +38,29 @@ glm::dvec4 vertex_color(const Scene& scene, const Hit& hit) {
     return scene.colors.empty() ? glm::dvec4(1.0) : interpolate<glm::dvec4>(scene.colors, scene, hit);
 }
 
-/// glTF's tangent space about the interpolated normal, as the front sees it: x along growing u, y along falling v.
+/// glTF's tangent space about the interpolated normal, as the front sees it: x along growing u, y along falling v, of
+/// coordinates as KHR_texture_transform leaves them.
 struct TangentSpace {
     glm::dvec3 tangent{0.0}, bitangent{0.0};  // unit; zero where the texture coordinates span no plane
 };
 
-TangentSpace tangent_space(const Scene& scene, const Hit& hit, const glm::dvec3& normal, std::uint32_t uv_set) {
+/// texture: for which it is; none: of the first coordinates.
+TangentSpace tangent_space(const Scene& scene, const Hit& hit, const glm::dvec3& normal,
+                           const std::optional<Texture>& texture) {
     const auto& v = scene.triangles[hit.triangle].vertex;
     if (!scene.tangents.empty() && scene.tangents[v[0]].w != 0.0f) {
         const glm::dvec3 tangent = glm::normalize(glm::dvec3(interpolate<glm::dvec4>(scene.tangents, scene, hit)));
         return {tangent, glm::normalize(glm::cross(normal, tangent)) * double(scene.tangents[v[0]].w)};
     }
-    const auto& uv = scene.uv[uv_set];
+    const auto& uv = scene.uv[texture ? texture->uv_set : 0];
+    const glm::dmat2 matrix(texture ? texture->matrix : glm::mat2(1.0f));
     if (uv.empty()) {
         return {};
     }
     const glm::dvec3 e1 = scene.positions[v[1]] - scene.positions[v[0]];
     const glm::dvec3 e2 = scene.positions[v[2]] - scene.positions[v[0]];
-    const glm::dvec2 d1 = glm::dvec2(uv[v[1]]) - glm::dvec2(uv[v[0]]), d2 = glm::dvec2(uv[v[2]]) - glm::dvec2(uv[v[0]]);
+    const glm::dvec2 d1 = matrix * (glm::dvec2(uv[v[1]]) - glm::dvec2(uv[v[0]]));
+    const glm::dvec2 d2 = matrix * (glm::dvec2(uv[v[2]]) - glm::dvec2(uv[v[0]]));
     const double determinant = d1.x * d2.y - d1.y * d2.x;
     const glm::dvec3 along_u = (e1 * d2.y - e2 * d1.y) * (determinant < 0.0 ? -1.0 : 1.0);
     const glm::dvec3 along_v = (e2 * d1.x - e1 * d2.x) * (determinant < 0.0 ? -1.0 : 1.0);
@@ -71,7 +76,7 @@ TangentSpace tangent_space(const Scene& scene, const Hit& hit, const glm::dvec3&
 glm::dvec3 mapped_normal(const Scene& scene, const Hit& hit, const glm::dvec3& normal,
                          const std::optional<Texture>& texture, double scale) {
     if (!texture) return normal;
-    const TangentSpace space = tangent_space(scene, hit, normal, texture->uv_set);
+    const TangentSpace space = tangent_space(scene, hit, normal, texture);
     const glm::dvec3 v = 2.0 * glm::dvec3(lookup(scene, hit, texture, Encoding::linear)) - 1.0;
     const glm::dvec3 sum = scale * v.x * space.tangent + scale * v.y * space.bitangent + v.z * normal;
     return glm::length(sum) > 0.0 ? glm::normalize(sum) : normal;
@@ -84,10 +89,8 @@ void set_anisotropy(const Scene& scene, const Hit& hit, const glm::dvec3& normal
                     Bsdf& bsdf) {
     if (material.anisotropy == 0.0f) return;
     const std::optional<Texture>& texture = material.anisotropy_texture;
-    const std::uint32_t uv_set = material.normal_texture ? material.normal_texture->uv_set
-                                 : texture               ? texture->uv_set
-                                                         : 0;
-    const TangentSpace space = tangent_space(scene, hit, normal, uv_set);
+    const TangentSpace space =
+        tangent_space(scene, hit, normal, material.normal_texture ? material.normal_texture : texture);
     const glm::dvec3 tangent = space.tangent - glm::dot(space.tangent, normal) * normal;
     if (glm::length(tangent) == 0.0) return;
     glm::dvec3 direction(1.0, 0.0, 1.0);  // and strength

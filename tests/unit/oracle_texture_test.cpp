@@ -161,6 +161,12 @@ TEST(OracleSurface, NormalTextureInTheTangentSpace) {
     const glm::dvec3 ex(1, 0, 0), ey(0, 1, 0), ez(0, 0, 1);
     expect_near(surface_at(scene, middle, down).shading_normal, tilted(ex, ey, ez), "from set 0: x right, y up");
     expect_near(surface_at(scene, middle, up).shading_normal, -tilted(ex, ey, ez), "from behind");
+    scene.materials[0].normal_texture->matrix = glm::mat2(-1, 0, 0, 1);
+    expect_near(surface_at(scene, middle, down).shading_normal, tilted(-ex, ey, ez), "mirrored by its transform");
+    // Column by column: u turns to v, v to -u. The new u grows upwards, the new v to the right.
+    scene.materials[0].normal_texture->matrix = glm::mat2(0, 1, -1, 0);
+    expect_near(surface_at(scene, middle, down).shading_normal, tilted(ey, -ex, ez), "turned by its transform");
+    scene.materials[0].normal_texture->matrix = glm::mat2(1);
     scene.materials[0].normal_texture->uv_set = 1;
     // u grows along +y and v along +x, so that the bitangent, against growing v, is -x.
     expect_near(surface_at(scene, middle, down).shading_normal, tilted(ey, -ex, ez), "from set 1");
