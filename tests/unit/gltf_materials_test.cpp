@@ -632,10 +632,16 @@ TEST(HostileTexture, IsRefusedByALineThatNamesIt) {
                      {"materials[0].normalTexture.extensions.KHR_texture_transform is 1000000000", "16777216"});
     expect_bad_scene(with(none, transform({{"offset", {1}}})).gltf(), {"offset is an array of 1", "must hold 2"});
     GltfBuilder builder = with({{"sampler", 0}}, none);
-    builder.add("samplers", {{"wrapS", 1}});
-    expect_bad_scene(builder.gltf(), {"samplers[0].wrapS is 1", "10497, 33071, 33648"});
-    builder.document["samplers"] = {{{"magFilter", 9987}}};
-    expect_bad_scene(builder.gltf(), {"samplers[0].magFilter is 9987", "9728, 9729"});
+    builder.add("samplers", {{"wrapS", 0.5}});
+    expect_bad_scene(builder.gltf(), {"samplers[0].wrapS is 0.5", "integer"});
+    // Filters and wraps that glTF does not have, as exporters write them for none.
+    builder.document["samplers"] = {{{"magFilter", 9987}, {"wrapS", -4294957296}, {"wrapT", 33648}}};
+    const Scene scene = load(builder);
+    const Texture& texture = scene.materials.at(0).normal_texture.value();
+    EXPECT_FALSE(texture.nearest);
+    EXPECT_EQ(texture.wrap_s, Texture::Wrap::repeat);
+    EXPECT_EQ(texture.wrap_t, Texture::Wrap::mirrored_repeat);
+    EXPECT_ONE_WARNING(scene, "samplers[0].magFilter = 9987 (and 1 more)", "no such number");
 }
 
 }  // namespace

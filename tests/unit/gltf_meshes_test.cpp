@@ -391,10 +391,58 @@ TEST(HostileMorph, IsRefusedByALineThatNamesIt) {
     expect_bad_scene(builder.gltf(), {"targets[0][\"POSITION\"] is 99", "accessors has"});
     builder.primitive()["targets"][0]["POSITION"] = builder.float3({{0, 0, 0}});
     expect_bad_scene(builder.gltf(), {"(POSITION of meshes[0].primitives[0].targets[0]) is 1", "POSITION has 3"});
-    builder.primitive()["targets"][0]["POSITION"] = builder.float3({{0, 0, 0}, {test::float_nan, 0, 0}, {0, 0, 0}});
-    expect_bad_scene(builder.gltf(), {"accessors[0] element 1", "nan", "finite"});
     builder.primitive()["targets"] = {7};
     expect_bad_scene(builder.gltf(), {"primitives[0].targets[0] is 7", "object"});
+}
+
+// ---- corners ----
+
+TEST(GltfCorners, ThoseAtNoPointCostTheirTriangles) {
+    const float infinity = std::numeric_limits<float>::infinity();
+    for (const float none : {test::float_nan, infinity, -infinity}) {
+        for (const bool has_normals : {false, true}) {
+            GltfBuilder builder = test::one_triangle();
+            builder.primitive()["attributes"]["POSITION"] =
+                builder.float3({{0, none, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}});
+            const std::vector<Float3> normals(5, {0, 0, 1});
+            if (has_normals) builder.primitive()["attributes"]["NORMAL"] = builder.float3(normals);
+            builder.primitive()["indices"] = builder.u16({1, 2, 3, 0, 1, 2, 2, 4, 3});
+            const Scene scene = load(builder);
+            EXPECT_EQ(scene.triangles.size(), 2u);
+            for (const glm::dvec3& p : scene.positions) EXPECT_LE(glm::length(p), 2.0);
+            EXPECT_ONE_WARNING(scene, "(POSITION of meshes[0].primitives[0])", "no finite numbers", "left out");
+            builder.primitive()["indices"] = builder.u16({1, 2, 3});
+            EXPECT_EQ(warnings_with(load(builder), {"finite"}), 0) << "no triangle has the vertex";
+        }
+    }
+}
+
+TEST(GltfCorners, ThoseThatAMorphTargetMovesToNoPointAreLeftOutWhereItDoes) {
+    GltfBuilder builder = with_targets();
+    builder.primitive()["targets"][0]["POSITION"] = builder.float3({{0, 0, 0}, {test::float_nan, 0, 0}, {0, 0, 0}});
+    builder.document["meshes"][0]["weights"] = {0, 1};
+    EXPECT_EQ(load(builder).triangles.size(), 1u);
+    builder.document["meshes"][0]["weights"] = {1, 1};
+    const Scene scene = load(builder);
+    EXPECT_TRUE(scene.triangles.empty());
+    EXPECT_ONE_WARNING(scene, "accessors[0] (POSITION of meshes[0].primitives[0])", "no finite numbers");
+}
+
+TEST(GltfCorners, RestartBeginsAStripAndAFanAnew) {
+    for (const int mode : {5, 6}) {
+        GltfBuilder builder = test::one_triangle();
+        builder.primitive()["mode"] = mode;
+        builder.primitive()["attributes"]["POSITION"] =
+            builder.float3({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}, {9, 9, 9}});
+        const std::vector<std::uint8_t> indices =
+            mode == 5 ? std::vector<std::uint8_t>{255, 0, 1, 2, 3, 255, 7, 255, 255, 4, 5, 6, 255}
+                      : std::vector<std::uint8_t>{255, 0, 1, 3, 2, 255, 7, 255, 255, 4, 5, 6, 255};
+        builder.primitive()["indices"] = builder.accessor(builder.view(indices), "SCALAR", 5121, indices.size());
+        const Scene scene = load(builder);
+        ASSERT_EQ(scene.triangles.size(), 3u);
+        for (const glm::vec3& n : scene.normals) EXPECT_EQ(n, glm::vec3(0, 0, 1));
+        EXPECT_ONE_WARNING(scene, "meshes[0].primitives[0]", "a new strip or fan");
+    }
 }
 
 // ---- instances ----
@@ -517,7 +565,10 @@ TEST(HostileAttribute, IsRefusedByALineThatNamesIt) {
     add_attribute<float, 2>(builder, "COLOR_0", 5126, false, {{0, 0}, {0, 0}, {0, 0}});
     expect_bad_scene(builder.gltf(), {"type is of 2 components", "COLOR_0 needs 4"});
     add_attribute<float, 3>(builder, "COLOR_0", 5126, false, {{0, 0, 0}, {0, test::float_nan, 0}, {0, 0, 0}});
-    expect_bad_scene(builder.gltf(), {"element 1 (COLOR_0 of meshes[0].primitives[0])", "nan", "numbers"});
+    const Scene scene = load(builder);
+    EXPECT_EQ(at_corners(scene, scene.colors),
+              (std::array{glm::vec4(0, 0, 0, 1), glm::vec4(0, 1, 0, 1), glm::vec4(0, 0, 0, 1)}));
+    EXPECT_ONE_WARNING(scene, "vertex colours that are no numbers");
 }
 
 }  // namespace

@@ -1,7 +1,11 @@
 #include "scene/gltf/materials.h"
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <map>
+#include <string>
+#include <vector>
 
 #include <glm/gtc/type_ptr.hpp>
 
@@ -29,10 +33,27 @@ glm::dvec3 vec3_or(const json& parent, const char* name, double otherwise) {
 }
 
 Texture::Wrap wrap_of(const json& sampler, const char* member) {
-    switch (sampler.value(member, 10497)) {
+    switch (sampler.value(member, std::int64_t(10497))) {
         case 33071: return Texture::Wrap::clamp_to_edge;
         case 33648: return Texture::Wrap::mirrored_repeat;
         default: return Texture::Wrap::repeat;
+    }
+}
+
+/// Exporters write numbers that glTF does not have, such as -1 for none.
+void check_sampler(const json& sampler, const std::string& object, Warnings& warnings) {
+    static const std::map<std::string, std::vector<std::int64_t>> known = {
+        {"magFilter", {9728, 9729}},
+        {"minFilter", {9728, 9729, 9984, 9985, 9986, 9987}},
+        {"wrapS", {10497, 33071, 33648}},
+        {"wrapT", {10497, 33071, 33648}},
+    };
+    for (const auto& [member, values] : known) {
+        if (!sampler.contains(member)) continue;
+        const auto value = sampler[member].get<std::int64_t>();
+        if (std::ranges::find(values, value) != values.end()) continue;
+        warnings.add("glTF has no such number, linear filters and repetition are taken",
+                     fmt::format("{}.{} = {}", object, member, value));
     }
 }
 
@@ -40,7 +61,7 @@ Texture::Wrap wrap_of(const json& sampler, const char* member) {
 bool is_nearest(const json& sampler) {
     constexpr int nearest = 9728, linear = 9729, nearest_mipmap_nearest = 9984, nearest_mipmap_linear = 9986;
     if (sampler.contains("magFilter")) return sampler["magFilter"] == nearest;
-    const int minification = sampler.value("minFilter", linear);
+    const auto minification = sampler.value("minFilter", std::int64_t(linear));
     return minification == nearest || minification == nearest_mipmap_nearest || minification == nearest_mipmap_linear;
 }
 
@@ -165,7 +186,9 @@ private:
         texture.image = *image;
         texture.uv_set = std::uint32_t(uv_set);
         if (source.contains("sampler")) {
-            const json& sampler = file_.document["samplers"][source["sampler"].get<std::size_t>()];
+            const auto number = source["sampler"].get<std::size_t>();
+            const json& sampler = file_.document["samplers"][number];
+            check_sampler(sampler, fmt::format("samplers[{}]", number), warnings_);
             texture.wrap_s = wrap_of(sampler, "wrapS");
             texture.wrap_t = wrap_of(sampler, "wrapT");
             texture.nearest = is_nearest(sampler);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <span>
 #include <utility>
 
 #include <tiny_gltf.h>
@@ -18,9 +19,10 @@ namespace {
 
 using nlohmann::json;
 
-/// The triangles of glTF 2.0, section 3.7.2.1, in its order and winding: a list, a strip or a fan of `indices`.
-std::vector<CornerIndices> assemble_triangles(int mode, const std::vector<std::uint32_t>& indices) {
-    std::vector<CornerIndices> triangles;
+constexpr std::uint32_t primitive_restart = UINT32_MAX;  // among indices of any type, once they are read
+
+/// Appends the triangles of glTF 2.0, section 3.7.2.1, in its order and winding: a list, a strip or a fan of `indices`.
+void assemble_triangles(int mode, std::span<const std::uint32_t> indices, std::vector<CornerIndices>& triangles) {
     const std::size_t n = indices.size();
     if (mode == TINYGLTF_MODE_TRIANGLES) {
         triangles.reserve(n / 3);
@@ -32,6 +34,16 @@ std::vector<CornerIndices> assemble_triangles(int mode, const std::vector<std::u
     } else {
         for (std::size_t i = 0; i + 2 < n; ++i) triangles.push_back({indices[i + 1], indices[i + 2], indices[0]});
     }
+}
+
+/// Those of all strips or fans that primitive restart parts; of a list there is one.
+std::vector<CornerIndices> assemble_parts(int mode, const std::vector<std::uint32_t>& indices) {
+    std::vector<CornerIndices> triangles;
+    for (auto begin = indices.begin(); begin < indices.end();) {
+        const auto end = std::find(begin, indices.end(), primitive_restart);
+        assemble_triangles(mode, std::span(begin, end), triangles);
+        begin = end == indices.end() ? end : end + 1;
+    }
     return triangles;
 }
 
@@ -39,6 +51,23 @@ std::vector<CornerIndices> assemble_triangles(int mode, const std::vector<std::u
 std::size_t corner_count(const tinygltf::Primitive& source, const GltfAccessors& accessors) {
     if (!has_triangles(source)) return 0;
     return accessors.count(source.indices >= 0 ? source.indices : source.attributes.at("POSITION"));
+}
+
+bool is_endless(const glm::dvec3& position) { return !is_finite(position); }
+
+/// The positions with the origin for those that are no numbers or infinite; themselves where there are none.
+SharedVectors<3> with_finite(const SharedVectors<3>& positions) {
+    if (std::ranges::none_of(*positions, is_endless)) return positions;
+    auto finite = std::make_shared<std::vector<glm::dvec3>>(*positions);
+    std::ranges::replace_if(*finite, is_endless, glm::dvec3(0.0));
+    return finite;
+}
+
+/// Leaves out the triangles with a corner at no point, of which exporters write some. False: there were none.
+bool leave_out_endless(std::vector<CornerIndices>& triangles, const std::vector<glm::dvec3>& positions) {
+    const auto has_none = [&](std::uint32_t vertex) { return is_endless(positions[vertex]); };
+    return std::erase_if(triangles,
+                         [&](const CornerIndices& corners) { return std::ranges::any_of(corners, has_none); }) > 0;
 }
 
 bool is_all_zero(const std::vector<double>& weights) {
@@ -97,10 +126,6 @@ LocalPrimitive PrimitiveReader::read_new(const tinygltf::Primitive& source, cons
     const SharedVectors<3> at_rest = accessors_.vectors<3>(positions, "POSITION");
     const std::size_t vertices = at_rest->size();
     primitive.positions = morphed(at_rest, source, "POSITION", weights, object);
-    const bool is_morphed = primitive.positions != at_rest;
-    if (is_morphed || finite_.insert(positions).second) {
-        check_finite(*primitive.positions, accessors_.name(positions), object);
-    }
     primitive.normals = morphed(attribute<3>(source, "NORMAL", vertices, object), source, "NORMAL", weights, object);
     for (std::size_t set = 0; set < 2; ++set) {
         if (needs.uv[set]) primitive.uv[set] = uv(source, set, vertices, object);
@@ -126,7 +151,16 @@ LocalPrimitive PrimitiveReader::read_new(const tinygltf::Primitive& source, cons
             warnings_.add("its morph targets are ignored", fmt::format("{} of {}", name, object));
         }
     }
-    primitive.triangles = assemble_triangles(source.mode, corner_indices(source, vertices, object));
+    primitive.triangles = assemble_parts(source.mode, corner_indices(source, vertices, object));
+    const SharedVectors<3> given = primitive.positions;
+    SharedVectors<3> of_moved;
+    SharedVectors<3>& finite = given == at_rest ? finite_[positions] : of_moved;
+    if (!finite) finite = with_finite(given);
+    primitive.positions = finite;
+    if (finite != given && leave_out_endless(primitive.triangles, *given)) {
+        warnings_.add("corners that are no finite numbers, their triangles are left out",
+                      fmt::format("{} (POSITION of {})", accessors_.name(positions), object));
+    }
     return primitive;
 }
 
@@ -229,7 +263,7 @@ void PrimitiveReader::pose(LocalPrimitive& primitive, const tinygltf::Primitive&
         if (normals) (*normals)[i] = placement ? placement->normal((*normals)[i]) : glm::vec3(0.0f);
         if (tangents) (*tangents)[i] = placement ? placement->tangent((*tangents)[i]) : glm::vec4(0.0f);
     }
-    check_finite(*positions, "posed", object);
+    check_finite(*positions, object);
     primitive.positions = positions;
     primitive.normals = normals;
     primitive.tangents = tangents;
@@ -239,11 +273,10 @@ void PrimitiveReader::pose(LocalPrimitive& primitive, const tinygltf::Primitive&
     primitive.is_posed = true;
 }
 
-void PrimitiveReader::check_finite(const std::vector<glm::dvec3>& positions, const std::string& accessor,
-                                   const std::string& object) const {
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        if (is_finite(positions[i])) continue;
-        bad_scene(file_.name, fmt::format("{} element {} (POSITION of {})", accessor, i, object), to_text(positions[i]),
+void PrimitiveReader::check_finite(const std::vector<glm::dvec3>& posed, const std::string& object) const {
+    for (std::size_t i = 0; i < posed.size(); ++i) {
+        if (is_finite(posed[i])) continue;
+        bad_scene(file_.name, fmt::format("posed element {} (POSITION of {})", i, object), to_text(posed[i]),
                   "a position must be finite");
     }
 }
@@ -290,8 +323,8 @@ SharedVectors<4> PrimitiveReader::colors(const tinygltf::Primitive& source, std:
         glm::dvec4& color = (*colors)[i];
         for (int c = 0; c < 4; ++c) {
             if (std::isnan(color[c])) {
-                bad_scene(file_.name, fmt::format("{} element {} (COLOR_0 of {})", accessor, i, object),
-                          fmt::format("({}, {}, {}, {})", color.r, color.g, color.b, color.a), "it must be numbers");
+                warnings_.add("vertex colours that are no numbers, taken for 1", accessor);
+                color[c] = 1.0;
             }
             if (color[c] < 0.0 || color[c] > 1.0) warnings_.add("vertex colours outside 0 to 1, clamped", accessor);
             color[c] = std::clamp(color[c], 0.0, 1.0);
@@ -302,7 +335,8 @@ SharedVectors<4> PrimitiveReader::colors(const tinygltf::Primitive& source, std:
     return cached->second;
 }
 
-/// The vertex of each corner in the order of the file: the indices, or 0, 1, 2... without them.
+/// The vertex of each corner in the order of the file: the indices, or 0, 1, 2... without them. In strips and fans
+/// primitive_restart as well, which glTF leaves to an extension and graphics cards follow.
 std::vector<std::uint32_t> PrimitiveReader::corner_indices(const tinygltf::Primitive& source, std::size_t vertices,
                                                            const std::string& object) {
     if (source.indices < 0) {
@@ -313,6 +347,11 @@ std::vector<std::uint32_t> PrimitiveReader::corner_indices(const tinygltf::Primi
     auto [indices, restart] = accessors_.indices(source.indices);
     for (std::size_t i = 0; i < indices.size(); ++i) {
         if (indices[i] < vertices && indices[i] != restart) continue;
+        if (indices[i] == restart && source.mode != TINYGLTF_MODE_TRIANGLES) {
+            indices[i] = primitive_restart;
+            warnings_.add("indices that begin a new strip or fan, which glTF leaves to an extension", object);
+            continue;
+        }
         bad_scene(file_.name, fmt::format("{} element {} (indices of {})", accessors_.name(source.indices), i, object),
                   fmt::to_string(indices[i]),
                   fmt::format("POSITION has {} vertices, and {} is no index", vertices, restart));

@@ -4,7 +4,6 @@
 #include <array>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -72,8 +71,7 @@ private:
     SharedVectors<4> colors(const tinygltf::Primitive& source, std::size_t vertices, const std::string& object);
     std::vector<std::uint32_t> corner_indices(const tinygltf::Primitive& source, std::size_t vertices,
                                               const std::string& object);
-    void check_finite(const std::vector<glm::dvec3>& positions, const std::string& accessor,
-                      const std::string& object) const;
+    void check_finite(const std::vector<glm::dvec3>& posed, const std::string& object) const;
     void pose(LocalPrimitive& primitive, const tinygltf::Primitive& source, const JointMatrices& joints,
               const std::string& object);
 
@@ -85,7 +83,7 @@ private:
     std::map<std::tuple<int, std::size_t, int>, LocalPrimitive> primitives_;  // by mesh, primitive, owner
     std::map<int, SharedVectors<2>> uv_;                                      // by accessor
     std::map<int, SharedVectors<4>> colors_;                                  // by accessor; null: all white
-    std::set<int> finite_;                                                    // accessors known to be finite
+    std::map<int, SharedVectors<3>> finite_;                                  // by accessor: positions
     std::size_t moved_vectors_ = 0;                                           // by morph targets and joints
 };
 
