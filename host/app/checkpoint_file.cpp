@@ -52,7 +52,7 @@ private:
     std::string& out_;
 };
 
-/// Reads what a Writer wrote; past the end it throws Error(bad_scene).
+/// Reads what a Writer wrote; past the end it throws Error(bad_input).
 class Reader {
 public:
     Reader(std::string_view bytes, const fs::path& file) : rest_(bytes), file_(file) {}
@@ -73,7 +73,7 @@ public:
         if (!rest_.empty()) fail(fmt::format("{} bytes after its end", rest_.size()));
     }
     [[noreturn]] void fail(const std::string& what) const {
-        throw Error(ExitCode::bad_scene, fmt::format("{}: the checkpoint's header has {}", file_.string(), what));
+        throw Error(ExitCode::bad_input, fmt::format("{}: the checkpoint's header has {}", file_.string(), what));
     }
 
 private:
@@ -206,7 +206,7 @@ public:
 
 private:
     [[noreturn]] void fail(const std::string& why) const {
-        throw Error(ExitCode::bad_scene, fmt::format("{} {}", file_.string(), why));
+        throw Error(ExitCode::bad_input, fmt::format("{} {}", file_.string(), why));
     }
     void read_into(char* to, std::size_t bytes) {
         if (!stream_.read(to, std::streamsize(bytes))) fail(fmt::format("cannot be read: {}", std::strerror(errno)));

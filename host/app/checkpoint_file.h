@@ -36,7 +36,7 @@ void require_same(const Identity& there, const Identity& asked, const std::files
 /// header; the state; FNV-1a of all before it. The header: identity, report, curve.
 void write_checkpoint(const std::filesystem::path& file, const Identity& identity, const Checkpoint& checkpoint);
 
-/// Throws Error(no_input) where there is no such file, Error(bad_scene) where it is no checkpoint, of another format,
+/// Throws Error(no_input) where there is no such file, Error(bad_input) where it is no checkpoint, of another format,
 /// cut off or damaged, or its state is larger than that of a picture of `pixels`, Error(usage) with what differs where
 /// it is not of `identity`. Takes no more memory than the file has bytes, and of another render none for its state.
 Checkpoint read_checkpoint(const std::filesystem::path& file, const Identity& identity, std::size_t pixels);

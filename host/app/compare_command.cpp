@@ -46,7 +46,7 @@ void execute(const CompareOptions& options) {
     const PictureMeasures measures = measure(image, read_exr(options.reference));
     const Comparison& comparison = measures.comparison;
     if (comparison.pixels == 0) {
-        throw Error(ExitCode::bad_scene, fmt::format("no pixel is finite in both {} and {}", options.image.string(),
+        throw Error(ExitCode::bad_input, fmt::format("no pixel is finite in both {} and {}", options.image.string(),
                                                      options.reference.string()));
     }
     if (comparison.pixels < image.extent.pixels()) {

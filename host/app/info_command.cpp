@@ -25,6 +25,18 @@
 namespace vkcppm {
 namespace {
 
+/// The rule by which an eye path gathers photons on a surface or goes on from it.
+constexpr const char* gathering_rule =
+    R"(Eye paths gather photons on diffuse lobes and follow lobes without roughness. A rough lobe is both
+followed, with its own density p, and gathered on, as by k photons (--knn) of density cos/pi, weighed by
+the balance heuristic: of its light p / (p + k cos/pi) is found by following and the rest by photons. Light
+that comes straight from its source, or through panes (thin smooth glass), is asked for on every surface
+that is not perfectly smooth: a point of a light of each kind (local, directional, environment) at a time,
+weighed against meeting it by the same heuristic; photons bring it next to lamps alone, or everywhere with
+--direct gathered. What of a punctual light comes by way of mirrors or other smooth glass is brought by
+photons alone.
+)";
+
 using Json = nlohmann::ordered_json;
 
 std::vector<std::size_t> triangles_by_material(const Scene& scene) {
@@ -136,10 +148,8 @@ Json json_of(const Memory& memory) {
               {"width", memory.size.width},     {"height", memory.size.height},
               {"bytes", sum_of(memory.needed)}, {"of", Json::array()}};
     for (const MemoryReport& row : memory.needed) {
-        json["of"].push_back({{"of", row.of},
-                              {"count", row.count},
-                              {"bytes_each", double(row.bytes) / double(std::max<std::uint64_t>(row.count, 1))},
-                              {"bytes", row.bytes}});
+        json["of"].push_back(
+            {{"of", row.of}, {"count", row.count}, {"bytes_each", row.bytes_each()}, {"bytes", row.bytes}});
     }
     return json;
 }
@@ -150,7 +160,7 @@ std::string text_of(const Memory& memory) {
                     double(sum_of(memory.needed)) * 1e-6, double(memory.device_bytes) * 1e-6, memory.device);
     for (const MemoryReport& row : memory.needed) {
         fmt::format_to(std::back_inserter(text), "  {}: {} times {:.1f} bytes, {:.1f} MB\n", row.of, row.count,
-                       double(row.bytes) / double(std::max<std::uint64_t>(row.count, 1)), double(row.bytes) * 1e-6);
+                       row.bytes_each(), double(row.bytes) * 1e-6);
     }
     return text;
 }
@@ -245,7 +255,7 @@ std::string plain_text(const Scene& scene, const std::vector<Feature>& features)
     }
     fmt::format_to(out, "{} features, which its kernels are specialised to\n", features.size());
     for (const Feature& feature : features) fmt::format_to(out, "  {}: {}\n", feature.name, feature.reason);
-    text += gathering_rule() + "\n";
+    text += gathering_rule;
     return text;
 }
 

@@ -124,7 +124,7 @@ Report add_whole(const Job& job, const Cut& cut, IterationSums& sums) {
     const Checkpoint checkpoint = read_checkpoint(file, identity_of(job, cut), job.plan.settings.size->pixels());
     const std::size_t bytes = floats_of(job, cut) * sizeof(float);
     if (checkpoint.state.size() != bytes || checkpoint.report.iterations != cut.count) {
-        throw Error(ExitCode::bad_scene,
+        throw Error(ExitCode::bad_input,
                     fmt::format("{} has {} bytes of sums over {} iterations, {} over {} are wanted", file.string(),
                                 checkpoint.state.size(), checkpoint.report.iterations, bytes, cut.count));
     }
@@ -211,12 +211,12 @@ Job job_of(const Json& json, const fs::path& folder) {
     settings.iterations = job.ends.empty() ? 0 : job.iterations();
     const bool in_order = std::ranges::is_sorted(job.ends) && !job.ends.empty() && job.ends.front() > job.pilot;
     if (!in_order || job.pilot < least_pilot || job.slice == 0 || !(job.scale > 0.0))
-        throw Error(ExitCode::bad_scene, "its numbers are out of range");
+        throw Error(ExitCode::bad_input, "its numbers are out of range");
     try {
         check_settings(settings);
         check_cuts(job);
     } catch (const Error& error) {
-        throw Error(ExitCode::bad_scene, error.what());
+        throw Error(ExitCode::bad_input, error.what());
     }
     return job;
 }
@@ -276,7 +276,7 @@ Job read_job(const fs::path& folder) {
     constexpr std::uint64_t most_bytes = 1u << 20;
     std::error_code error;
     if (const std::uint64_t bytes = fs::file_size(file, error); error || bytes > most_bytes)
-        throw Error(ExitCode::bad_scene, fmt::format("{} is no job of vkcppm", file.string()));
+        throw Error(ExitCode::bad_input, fmt::format("{} is no job of vkcppm", file.string()));
     const std::string text(std::istreambuf_iterator<char>(stream), {});
     try {
         const Json json = Json::parse(text);
@@ -286,7 +286,7 @@ Job read_job(const fs::path& folder) {
         }
         return job_of(json, folder);
     } catch (const Json::exception&) {
-        throw Error(ExitCode::bad_scene, fmt::format("{} is no job of vkcppm", file.string()));
+        throw Error(ExitCode::bad_input, fmt::format("{} is no job of vkcppm", file.string()));
     } catch (const Error& bad) {
         if (bad.code() == ExitCode::usage) throw;
         throw Error(bad.code(), fmt::format("{} is no job of vkcppm: {}", file.string(), bad.what()));
@@ -300,7 +300,7 @@ void write_pilot(const Job& job, const Pilot& pilot, const Report& report) {
 PilotOnDisk read_pilot(const Job& job) {
     Checkpoint checkpoint = read_checkpoint(pilot_file(job), job.identity, job.plan.settings.size->pixels());
     if (checkpoint.report.iterations != job.pilot) {
-        throw Error(ExitCode::bad_scene,
+        throw Error(ExitCode::bad_input,
                     fmt::format("{} has {} iterations, the job tells of {}", pilot_file(job).string(),
                                 checkpoint.report.iterations, job.pilot));
     }

@@ -63,7 +63,7 @@ bool is_job(const std::filesystem::path& folder);
 /// Replaces job.json. Throws Error(cannot_write).
 void write_job(const Job& job);
 
-/// Throws Error(no_input) where there is none, Error(bad_scene) where it is not one, Error(usage) where it is of
+/// Throws Error(no_input) where there is none, Error(bad_input) where it is not one, Error(usage) where it is of
 /// another version.
 Job read_job(const std::filesystem::path& folder);
 
@@ -82,7 +82,7 @@ std::filesystem::path slice_file(const Job& job, const Cut& cut);
 void write_slice(const Job& job, const Cut& cut, const Slice& slice);
 
 /// Adds what is on disk to the sums, empty at first: no memory is taken before a file is found whole. The slice's
-/// report, or why there is none: Error(no_input) where the file is not there, Error(bad_scene) where it is damaged.
+/// report, or why there is none: Error(no_input) where the file is not there, Error(bad_input) where it is damaged.
 /// Throws Error(usage) with what differs where it is of another job.
 std::variant<Report, Error> add_slice(const Job& job, const Cut& cut, IterationSums& sums);
 

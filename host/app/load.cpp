@@ -63,7 +63,7 @@ void tell_warnings(const Scene& scene, const SceneOptions& options, std::set<std
     }
     print_warnings(lines);
     if (!options.strict || scene.warnings.empty()) return;
-    throw Error(ExitCode::bad_scene, fmt::format("{}: {} warnings; with --strict there must be none",
+    throw Error(ExitCode::bad_input, fmt::format("{}: {} warnings; with --strict there must be none",
                                                  options.file.string(), scene.warnings.size()));
 }
 

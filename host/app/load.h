@@ -15,7 +15,7 @@ namespace vkcppm {
 Scene load_scene(const SceneOptions& options);
 
 /// Prints the warnings of the scene but for those that were `told` of another frame, and adds them to these. Throws
-/// Error(bad_scene) where there are some and none is allowed.
+/// Error(bad_input) where there are some and none is allowed.
 void tell_warnings(const Scene& scene, const SceneOptions& options, std::set<std::string>& told);
 void tell_warnings(const Scene& scene, const SceneOptions& options);
 

@@ -35,7 +35,7 @@ constexpr std::uint32_t most_shards = 1u << 20;
 constexpr const char* race_estimators = "cppm,sppm,appm";
 
 constexpr const char* footer = R"(Exit codes:
-  0 done   2 usage   65 bad scene   66 no such file   69 no usable Vulkan device   70 internal
+  0 done   2 usage   65 bad input   66 no such file   69 no usable Vulkan device   70 internal
   71 out of device memory   73 cannot write   75 device lost)";
 
 /// Adds an option whose value `parse` turns into `target`.
@@ -345,7 +345,7 @@ void finish(const CLI::App& app, const Words&, RenderOptions& options) {
 }
 
 constexpr const char* job_footer = R"(Exit codes:
-  0 done   2 usage   65 bad scene or file   66 no such file   69 no usable Vulkan device   70 internal
+  0 done   2 usage   65 bad input   66 no such file   69 no usable Vulkan device   70 internal
   71 out of device memory   73 cannot write   75 device lost   130 interrupted)";
 
 void add_job(CLI::App& app, std::filesystem::path& job) {

@@ -44,6 +44,13 @@ fs::path name_of(const fs::path& file) {
 
 bool is_same_file(const fs::path& a, const fs::path& b) { return name_of(a) == name_of(b); }
 
+void make_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (!error) return;
+    throw Error(ExitCode::cannot_write, fmt::format("cannot make the folder {}: {}", folder.string(), error.message()));
+}
+
 void check_outputs(const std::vector<std::optional<fs::path>>& inputs, const std::vector<Output>& outputs,
                    bool prints) {
     std::vector<fs::path> taken;

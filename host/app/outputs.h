@@ -16,6 +16,9 @@ struct Output {
 /// Whether two names are of one file, be it there or not, however they are spelled or linked.
 bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
 
+/// Makes a folder for outputs, and those above it, where it is not there. Throws Error(cannot_write).
+void make_folder(const std::filesystem::path& folder);
+
 /// Refuses outputs that would overwrite an input or one another, however they are spelled or linked, or whose name ends
 /// like another format (usage), or that cannot be written (cannot_write), by throwing Error. Called before any time is
 /// spent, and again when a scene is loaded, with all that it has named. Inputs that are absent are skipped. prints: the

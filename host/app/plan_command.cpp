@@ -87,12 +87,6 @@ void extend(const PlanOptions& options) {
     if (!options.quiet) print_message(fmt::format("{}: {}", options.job.string(), told(job)));
 }
 
-void make_folder(const fs::path& folder) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) throw Error(ExitCode::cannot_write, fmt::format("cannot make {}: {}", folder.string(), error.message()));
-}
-
 }  // namespace
 
 void execute(const PlanOptions& options) {

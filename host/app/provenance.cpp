@@ -146,10 +146,8 @@ Json report_json(const Report& report) {
                       {"device_memory_bytes", report.device_memory_bytes}};
     if (!report.memory.empty()) json["memory"] = Json::array();
     for (const MemoryReport& row : report.memory) {
-        json["memory"].push_back({{"of", row.of},
-                                  {"count", row.count},
-                                  {"bytes_each", double(row.bytes) / double(row.count)},
-                                  {"bytes", row.bytes}});
+        json["memory"].push_back(
+            {{"of", row.of}, {"count", row.count}, {"bytes_each", row.bytes_each()}, {"bytes", row.bytes}});
     }
     json["passes"] = Json::array();
     for (const PassReport& pass : report.passes) {
@@ -205,7 +203,7 @@ std::string stats_table(const Report& report) {
     fmt::format_to(out, "{:<20}{:>10}{:>14.4f}\n", "all", "", total);
     fmt::format_to(out, "{:<20}{:>10}{:>14}{:>8}\n", "memory of a", "count", "bytes each", "MiB");
     for (const MemoryReport& row : report.memory) {
-        fmt::format_to(out, "{:<20}{:>10}{:>14.1f}{:>8.1f}\n", row.of, row.count, double(row.bytes) / double(row.count),
+        fmt::format_to(out, "{:<20}{:>10}{:>14.1f}{:>8.1f}\n", row.of, row.count, row.bytes_each(),
                        double(row.bytes) / 1048576.0);
     }
     fmt::format_to(out, "{} emitted paths, {} stored photons, {} rays\n", report.emitted_paths, report.stored_photons,

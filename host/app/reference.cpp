@@ -26,7 +26,7 @@ Image read_reference(const std::filesystem::path& file, const Extent& size) {
         ++bad;
     }
     if (first) {
-        throw Error(ExitCode::bad_scene,
+        throw Error(ExitCode::bad_input,
                     fmt::format("--reference: {} of {} pixels of {} are NaN or infinite, the first in column {}, "
                                 "row {}",
                                 bad, image.rgb.size(), file.string(), *first % size.width, *first / size.width));

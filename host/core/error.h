@@ -11,7 +11,7 @@ enum class ExitCode : int {
     ok = 0,
     differs = 1,
     usage = 2,
-    bad_scene = 65,
+    bad_input = 65,
     no_input = 66,
     no_device = 69,
     internal = 70,

@@ -135,18 +135,4 @@ std::uint32_t bits_of(const std::vector<Feature>& features) {
     return bits;
 }
 
-std::string gathering_rule() {
-    return "Eye paths gather photons on diffuse lobes and follow lobes without roughness. A rough lobe is both\n"
-           "followed, with its own density p, and gathered on, as by k photons (--knn) of density cos/pi, weighed by\n"
-           "the balance heuristic: of its light p / (p + k cos/pi) is found by following and the rest by photons. "
-           "Light\n"
-           "that comes straight from its source, or through panes (thin smooth glass), is asked for on every surface\n"
-           "that is not perfectly smooth: a point of a light of each kind (local, directional, environment) at a "
-           "time,\n"
-           "weighed against meeting it by the same heuristic; photons bring it next to lamps alone, or everywhere "
-           "with\n"
-           "--direct gathered. What of a punctual light comes by way of mirrors or other smooth glass is brought by\n"
-           "photons alone.";
-}
-
 }  // namespace vkcppm

@@ -18,7 +18,4 @@ std::vector<Feature> features_of(const Scene& scene, const std::vector<MaterialT
 
 std::uint32_t bits_of(const std::vector<Feature>& features);
 
-/// The rule by which an eye path gathers photons on a surface or goes on from it: for `vkcppm info`.
-std::string gathering_rule();
-
 }  // namespace vkcppm

@@ -435,7 +435,7 @@ Triangle source_of(const Scene& scene, const FlatScene& flat, std::size_t triang
 FlatScene flatten(const Scene& scene) {
     FlatScene flat;
     if (scene.materials.size() >= PATH_NO_MEDIUM) {
-        throw Error(ExitCode::bad_scene, fmt::format("{}: {} materials, the limit is {}", scene.file.string(),
+        throw Error(ExitCode::bad_input, fmt::format("{}: {} materials, the limit is {}", scene.file.string(),
                                                      scene.materials.size(), PATH_NO_MEDIUM - 1));
     }
     TextureTable textures(scene);

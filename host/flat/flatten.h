@@ -6,7 +6,7 @@
 
 namespace vkcppm {
 
-/// Throws Error(bad_scene) where a count is beyond what the kernels can index.
+/// Throws Error(bad_input) where a count is beyond what the kernels can index.
 FlatScene flatten(const Scene& scene);
 
 }  // namespace vkcppm

@@ -126,10 +126,10 @@ private:
             work_ += other->triangles.size();
             if (work_ > most_solid_angles) return other;
             const double winding = winding_number(scene_, *other, point);
-            if (winding > 0.75) holder = other;
+            if (winding > inside_turns) holder = other;
             turns += winding;
         }
-        return turns > 0.75 ? holder : nullptr;
+        return turns > inside_turns ? holder : nullptr;
     }
 
     const Scene& scene_;
@@ -202,13 +202,8 @@ std::string nested_solids(const Scene& scene, std::span<const Shell> shells) {
         return fmt::format("material '{}' with '{}'", scene.materials[a].name, scene.materials[b].name);
     };
     if (const auto pair = nested_instances(scene, shells)) return named(pair->first, pair->second);
-    // Ordered by their first triangles, and so by the space that they are in.
-    for (std::size_t first = 0, last; first < shells.size(); first = last) {
-        const auto mesh = mesh_of(scene, shells[first].triangles.front());
-        for (last = first; last < shells.size(); ++last) {
-            if (mesh_of(scene, shells[last].triangles.front()) != mesh) break;
-        }
-        if (const auto pair = Space(scene, shells.subspan(first, last - first)).nested()) {
+    for (const std::span<const Shell> space : by_space(scene, shells)) {
+        if (const auto pair = Space(scene, space).nested()) {
             return named(material_of(scene, *pair->first), material_of(scene, *pair->second));
         }
     }

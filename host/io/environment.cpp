@@ -27,7 +27,7 @@ std::vector<std::uint8_t> read_bytes(const fs::path& file) {
     require_file(file);
     const std::uintmax_t size = fs::file_size(file, error);
     if (!error && size > most_bytes) {
-        throw Error(ExitCode::bad_scene,
+        throw Error(ExitCode::bad_input,
                     fmt::format("{}: its size is {}; the limit is {} bytes", file.string(), size, most_bytes));
     }
     std::vector<std::uint8_t> bytes(error ? 0 : std::size_t(size));
@@ -45,7 +45,7 @@ bool begins_with(const std::vector<std::uint8_t>& bytes, std::string_view magic)
 Image decode(const std::vector<std::uint8_t>& bytes, const fs::path& file) {
     if (begins_with(bytes, "\x76\x2f\x31\x01")) return read_exr(file, most_environment_pixels);
     if (begins_with(bytes, "#?")) return decode_hdr(bytes, file, most_environment_pixels);
-    throw Error(ExitCode::bad_scene, file.string() + ": is neither an OpenEXR nor a Radiance picture");
+    throw Error(ExitCode::bad_input, file.string() + ": is neither an OpenEXR nor a Radiance picture");
 }
 
 std::string shown(const Image& image, std::size_t i) {
@@ -82,7 +82,7 @@ void mend(Image& image, const fs::path& file, std::vector<std::string>& warnings
             for (int c = 0; c < 3; ++c) v[c] = v[c] == infinity ? brightest_half : v[c];
         }
         if (!is_finite(v)) {
-            throw Error(ExitCode::bad_scene,
+            throw Error(ExitCode::bad_input,
                         fmt::format("{}: {}; radiance must be finite", file.string(), shown(image, i)));
         }
         if (v.r >= 0.0f && v.g >= 0.0f && v.b >= 0.0f) continue;

@@ -40,7 +40,7 @@ Imath::half to_half(float value) {
 }
 
 [[noreturn]] void fail_to_read(const fs::path& file, const std::string& reason) {
-    throw Error(ExitCode::bad_scene, file.string() + ": cannot read this EXR picture: " + reason);
+    throw Error(ExitCode::bad_input, file.string() + ": cannot read this EXR picture: " + reason);
 }
 
 std::int64_t width(const Imath::Box2i& window) { return std::int64_t(window.max.x) - window.min.x + 1; }

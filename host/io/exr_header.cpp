@@ -64,7 +64,7 @@ public:
 
 private:
     [[noreturn]] void fail(const std::string& reason) const {
-        throw Error(ExitCode::bad_scene, file_.string() + ": cannot read this EXR picture: " + reason);
+        throw Error(ExitCode::bad_input, file_.string() + ": cannot read this EXR picture: " + reason);
     }
 
     std::uint64_t left() { return size_ - std::min(size_, std::uint64_t(in_.tellg())); }

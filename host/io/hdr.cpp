@@ -44,7 +44,7 @@ public:
 
 private:
     [[noreturn]] void fail(const std::string& reason) const {
-        throw Error(ExitCode::bad_scene, fmt::format("{}: cannot read this Radiance picture: {}", file_, reason));
+        throw Error(ExitCode::bad_input, fmt::format("{}: cannot read this Radiance picture: {}", file_, reason));
     }
 
     [[noreturn]] void fail_in_row(const std::string& reason) const { fail(fmt::format("row {} {}", row_, reason)); }

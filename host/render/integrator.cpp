@@ -69,7 +69,7 @@ Integrator::Integrator(const SceneOnDevice& on_device, const Camera& camera, con
     scale_ = scene.frame.scale;
     measures_area_ = settings.disc_area == area_measured && !settings.caustics;
     set_test(params_, estimator, settings);
-    set_params(scene, settings);
+    set_estimator_params(scene, settings);
 
     check_memory(counts_, settings, device_);
     on_device.lend(buffers_);
@@ -100,7 +100,7 @@ Integrator::Integrator(const SceneOnDevice& on_device, const Camera& camera, con
 }
 
 /// Starting radii and the estimator's parameters.
-void Integrator::set_params(const FlatScene& scene, const Settings& settings) {
+void Integrator::set_estimator_params(const FlatScene& scene, const Settings& settings) {
     params_.inverse_paths = params_.photons > 0 ? 1.0f / float(params_.photons) : 0.0f;
     params_.flux_unit = scene.light_power > 0.0 ? float(std::exp2(-std::floor(std::log2(scene.light_power)))) : 1.0f;
     params_.knn = settings.knn;

@@ -55,7 +55,7 @@ public:
     std::vector<std::byte> save() const;
 
     /// Goes on from what save() and fill() gave: the iterations from there on give the bits they would have given.
-    /// Scene, camera and settings must be those of then. Throws Error(bad_scene) where `state` cannot be theirs.
+    /// Scene, camera and settings must be those of then. Throws Error(bad_input) where `state` cannot be theirs.
     void restore(const Report& report, std::span<const std::byte> state);
 
     /// Goes on with iteration `first`, after nothing: what is summed begins anew, and pixels take these
@@ -119,7 +119,7 @@ private:
         std::uint32_t rounds = 1;  // that it has needed so far
     };
 
-    void set_params(const FlatScene& scene, const Settings& settings);
+    void set_estimator_params(const FlatScene& scene, const Settings& settings);
     Counts counts() const;
     void allocate_photons();
     void allocate_sorted();

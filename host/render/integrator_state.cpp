@@ -90,7 +90,7 @@ void Integrator::restore(const Report& report, std::span<const std::byte> state)
     gpu::Status status{};
     const std::uint64_t bytes = state_bytes();
     if (state.size() != bytes) {
-        throw Error(ExitCode::bad_scene,
+        throw Error(ExitCode::bad_input,
                     fmt::format("the checkpoint's state has {} bytes, that of this render {}", state.size(), bytes));
     }
     const auto take = [&](std::uint64_t count) {
@@ -103,7 +103,7 @@ void Integrator::restore(const Report& report, std::span<const std::byte> state)
                  [&](Buffer& buffer, std::uint64_t first, std::uint64_t bytes) { buffer.upload(take(bytes), first); });
     const auto grid = buffer(Binding::grid).download_value<gpu::Grid>();
     if (!grid_fits(grid, params_)) {
-        throw Error(ExitCode::bad_scene,
+        throw Error(ExitCode::bad_input,
                     fmt::format("the checkpoint's grid of {} levels in {} entries is not one of this render, which has "
                                 "room for {} in {}",
                                 grid.levels, grid.entries, params_.most_levels, params_.cells));

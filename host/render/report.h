@@ -20,6 +20,8 @@ struct MemoryReport {
     std::string of;  // what there are `count` of
     std::uint64_t count = 0;
     std::uint64_t bytes = 0;  // of all of them
+
+    double bytes_each() const { return count > 0 ? double(bytes) / double(count) : 0.0; }
 };
 
 struct Report {

@@ -55,7 +55,7 @@ public:
     /// any slice.
     std::optional<PilotOfSlices> render_pilot(std::uint32_t iterations, const KeepGoing& keep_going);
 
-    /// Iterations from `first` on, `count` of them. None where keep_going ended it. Throws Error(bad_scene) where the
+    /// Iterations from `first` on, `count` of them. None where keep_going ended it. Throws Error(bad_input) where the
     /// pilot cannot be of this scene and these settings.
     std::optional<Slice> render_slice(const Pilot& pilot, std::uint32_t first, std::uint32_t count,
                                       const KeepGoing& keep_going);

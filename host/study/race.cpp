@@ -29,11 +29,11 @@ void add_squared_error(std::vector<double>& sums, const Image& image, const Imag
 }
 
 /// An entrant in the seed that runs.
-class Lane {
+class EntrantRun {
 public:
     /// Starts a curve in `run`, or goes on with one. Throws Error(out_of_device_memory) with the entrant.
-    Lane(const SceneOnDevice& on_device, const Scene& scene, RaceRun& run, const std::optional<StopAt>& stop_at,
-         std::uint32_t seed, const RaceStates& states)
+    EntrantRun(const SceneOnDevice& on_device, const Scene& scene, RaceRun& run, const std::optional<StopAt>& stop_at,
+               std::uint32_t seed, const RaceStates& states)
         : run_(run), settings_(run.entrant.settings), stop_at_(stop_at), states_(states) {
         settings_.seed = seed;
         std::optional<Checkpoint> from;
@@ -115,11 +115,11 @@ private:
     std::unique_ptr<Integrator> integrator_;
 };
 
-/// The lane whose turn it is: the one that is behind. None where all are finished.
-Lane* next_lane(std::vector<Lane>& lanes) {
-    Lane* next = nullptr;
-    for (Lane& lane : lanes) {
-        if (!lane.finished() && (!next || lane.at() < next->at())) next = &lane;
+/// The run whose turn it is: the one that is behind. None where all are finished.
+EntrantRun* next_run(std::vector<EntrantRun>& runs) {
+    EntrantRun* next = nullptr;
+    for (EntrantRun& run : runs) {
+        if (!run.finished() && (!next || run.at() < next->at())) next = &run;
     }
     return next;
 }
@@ -165,30 +165,30 @@ RaceResult run_race(const Scene& scene, const RaceSettings& race, const Image& r
     const double begin = wall_now();
     for (std::uint32_t s = 0; s < race.seeds && !result.interrupted; ++s) {
         const std::uint32_t seed = race.entrants.front().settings.seed + s;
-        std::vector<Lane> lanes;
-        for (RaceRun& run : result.runs) lanes.emplace_back(on_device, scene, run, race.stop_at, seed, states);
+        std::vector<EntrantRun> running;
+        for (RaceRun& run : result.runs) running.emplace_back(on_device, scene, run, race.stop_at, seed, states);
         const auto progress = [&] {
             double done = s;
-            for (const Lane& lane : lanes) done += lane.done() / double(lanes.size());
+            for (const EntrantRun& run : running) done += run.done() / double(running.size());
             return RaceProgress{s, race.seeds, done / race.seeds, wall_now() - begin, result.runs};
         };
-        while (Lane* lane = next_lane(lanes)) {
-            lane->take_turn(reference);
+        while (EntrantRun* next = next_run(running)) {
+            next->take_turn(reference);
             result.interrupted = !keep_racing(progress()) || result.interrupted;
             // The first seed goes on until all have a picture.
-            if (result.interrupted && (s > 0 || std::ranges::all_of(lanes, &Lane::began))) break;
+            if (result.interrupted && (s > 0 || std::ranges::all_of(running, &EntrantRun::began))) break;
         }
-        if (next_lane(lanes) && s > 0) {
-            for (const Lane& lane : lanes) lane.keep();
+        if (next_run(running) && s > 0) {
+            for (const EntrantRun& run : running) run.keep();
             for (RaceRun& run : result.runs) run.curves.pop_back();
             break;
         }
         result.seeds.push_back(seed);
-        for (std::size_t e = 0; e < lanes.size(); ++e) {
-            lanes[e].end(reference);
-            if (lanes[e].invalid() == 0) continue;
+        for (std::size_t e = 0; e < running.size(); ++e) {
+            running[e].end(reference);
+            if (running[e].invalid() == 0) continue;
             result.warnings.push_back(fmt::format("{}, seed {}: {} contributions were not finite and were dropped",
-                                                  result.runs[e].entrant.name, seed, lanes[e].invalid()));
+                                                  result.runs[e].entrant.name, seed, running[e].invalid()));
         }
     }
     for (RaceRun& run : result.runs) {

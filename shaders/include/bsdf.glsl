@@ -9,7 +9,7 @@
 
 #include "include/kernel.glsl"
 #include "include/colour.glsl"
-#include "include/film.glsl"
+#include "include/thin_film.glsl"
 #include "include/frame.glsl"
 #include "include/fresnel.glsl"
 #include "include/ggx.glsl"
@@ -56,7 +56,7 @@ struct Bsdf {
     bool thin;              // transmission passes straight on
     float specular;         // of glass: strength and colour of what it reflects
     vec3 specular_color;
-    float film;             // share of the surface with a thin film: include/film.glsl
+    float film;             // share of the surface with a thin film: include/thin_film.glsl
     float film_index;
     float film_thickness;   // micrometres
     float metallic;         // below the film: the share of metal, and reflectances at normal incidence
@@ -75,7 +75,7 @@ float below_clearcoat(Bsdf b, float cosine) { return 1.0 - clearcoat_fresnel(b, 
 
 // Reflectance of the film and what is below it.
 vec3 below_film(Bsdf b, float cosine, vec3 r0) {
-    return film_reflectance(cosine, b.film_index, b.film_thickness, r0);
+    return thin_film_reflectance(cosine, b.film_index, b.film_thickness, r0);
 }
 
 // Reflectance of a facet of glass, and the cosine beyond. KHR_materials_specular scales it at normal incidence by

@@ -16,12 +16,12 @@ void camera_ray(uint pixel, uint sequence, out vec3 origin, out vec3 direction, 
     vec2 jitter = vec2(stratified(params.seed, sequence, pixel, 0u),
                        stratified(params.seed, sequence, pixel, 1u));
     vec2 raster = vec2(pixel % params.width, pixel / params.width) + jitter;
-    vec2 film = 2.0 * raster / vec2(params.width, params.height) - 1.0;
-    vec3 through = params.forward + film.x * params.right - film.y * params.up;
-    vec3 eye = params.eye + params.start * (film.x * params.right - film.y * params.up);
+    vec2 image_plane = 2.0 * raster / vec2(params.width, params.height) - 1.0;
+    vec3 through = params.forward + image_plane.x * params.right - image_plane.y * params.up;
+    vec3 eye = params.eye + params.start * (image_plane.x * params.right - image_plane.y * params.up);
     if (params.orthographic != 0u) {
         through = params.forward;
-        eye = params.eye + film.x * params.right - film.y * params.up;
+        eye = params.eye + image_plane.x * params.right - image_plane.y * params.up;
     }
     distance = params.start * length(through);
     if (params.lens_radius > 0.0) {

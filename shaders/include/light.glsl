@@ -91,10 +91,10 @@ uint choose_asked(Lamp lamp, inout uint word, out float power) {
     uint entry, low;
     umulExtended(word, lamp.count, entry, low);
     asked = asked_lights_at(lamp.first + entry);
-    float share = float(low >> 8u) * 5.9604644775390625e-8;
+    float share = unit_float(low);
     bool keeps = share < asked.keep;
     share = keeps ? share / asked.keep : (share - asked.keep) / (1.0 - asked.keep);
-    word = uint(min(share, 0.99999994) * 4294967296.0);
+    word = uint(min(share, LARGEST_UNIT) * 4294967296.0);
     return keeps ? asked.light : asked.alias_light;
 }
 

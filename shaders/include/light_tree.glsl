@@ -7,6 +7,7 @@
 
 #include "include/kernel.glsl"
 #include "include/frame.glsl"
+#include "include/rng.glsl"
 
 LIGHT_TREE(RECORDS)
 LAMPS(TEXELS)
@@ -63,7 +64,7 @@ const float COARSE = 9.5367431640625e-7;            // 2^-20
 Lamp choose_lamp(AskedGroup group, vec3 position, inout uint word, vec2 v) {
     bool has_tree = HAS_LIGHT_TREE && group.depth > 0u;
     Lamp lamp = Lamp(has_tree ? 0u : group.first, has_tree ? 0u : group.count, 1.0);
-    float share = min(float(word) * ULP_OF_WORDS, 0.99999994);
+    float share = min(float(word) * ULP_OF_WORDS, LARGEST_UNIT);
     float step = ULP_OF_WORDS;  // between shares that there are
     while (HAS_LIGHT_TREE && lamp.count == 0u) {
         LightBranch branch = light_tree_at(lamp.first);
@@ -82,7 +83,7 @@ Lamp choose_lamp(AskedGroup group, vec3 position, inout uint word, vec2 v) {
             step = ULP_OF_WORDS;
             v = v.yx;
         }
-        share = min(share, 0.99999994);
+        share = min(share, LARGEST_UNIT);
         lamp = Lamp(branch.first[child], branch.count[child], lamp.probability * probability);
     }
     if (has_tree) word = uint(share * 4294967296.0);

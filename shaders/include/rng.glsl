@@ -32,8 +32,12 @@ uvec4 random_words(uint seed, uint iteration, uint stream, uint path, uint dimen
     return pcg4d(uvec4(path, dimension, iteration * STREAMS + stream, seed));
 }
 
+#define ULP_OF_UNITS 5.9604644775390625e-8  // 2^-24
+#define LARGEST_UNIT 0.99999994             // the largest float below 1
+
 // Numbers in [0, 1), the upper 24 bits of words.
-vec4 unit_floats(uvec4 words) { return vec4(words >> 8u) * 5.9604644775390625e-8; }
+float unit_float(uint word) { return float(word >> 8u) * ULP_OF_UNITS; }
+vec4 unit_floats(uvec4 words) { return vec4(words >> 8u) * ULP_OF_UNITS; }
 
 vec4 random4(uint seed, uint iteration, uint stream, uint path, uint dimension) {
     return unit_floats(random_words(seed, iteration, stream, path, dimension));
@@ -57,7 +61,7 @@ const uint RECURRENCE[STRATIFIED_DIMENSIONS] = uint[](0xc13fa9a9u, 0x91e10da5u, 
 // Term `i` of an additive recurrence in [0, 1), shifted at random for every pixel and dimension.
 float recurrence(uint seed, uint i, uint pixel, uint dimension, uint step) {
     uint shift = pcg4d(uvec4(pixel, dimension, STREAM_SHIFT, seed)).x;
-    return float((shift + i * step) >> 8u) * 5.9604644775390625e-8;
+    return unit_float(shift + i * step);
 }
 
 // A number in [0, 1) for dimension `dimension` of the eye path of `pixel`: over the iterations a low-discrepancy

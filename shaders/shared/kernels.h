@@ -45,7 +45,7 @@
 #define PASS_PHOTON 2u
 #define PASS_KNN 4u
 #define PASS_GATHER 8u
-#define PASS_AREA 128u
+#define PASS_AREA 16u
 #define PASS_TRACE 32u
-#define PASS_CAPACITY 16u  // a lane stored more photons than it has slots
-#define PASS_LEVELS 64u    // the grid is to have more levels than there is room for
+#define PASS_CAPACITY 64u  // a lane stored more photons than it has slots
+#define PASS_LEVELS 128u    // the grid is to have more levels than there is room for

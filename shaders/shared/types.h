@@ -93,7 +93,7 @@ using uint = std::uint32_t;
     MATERIAL(27, SPECULAR_GLASS, specular factors of glass, specular_glass)                                    \
     SCENE(28, NESTED, solids in one another)     /* or that touch or overlap: include/media.glsl */            \
     MATERIAL(29, ANISOTROPY, anisotropy, anisotropic)         /* facets wider along a tangent than across it */ \
-    MATERIAL(30, IRIDESCENCE, iridescence, iridescent)        /* a thin film: include/film.glsl */             \
+    MATERIAL(30, IRIDESCENCE, iridescence, iridescent)        /* a thin film: include/thin_film.glsl */             \
     SETTING(31, ERRORS, errors of pixels)        /* what they are estimated from: render/error_estimate.h */
 // clang-format on
 #define FEATURE_BIT(bit, NAME, words) VKCPPM_CONST uint FEATURE_##NAME = 1u << bit;

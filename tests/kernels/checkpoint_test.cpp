@@ -96,7 +96,7 @@ TEST_F(CheckpointState, OfAnotherSizeOrWithAnImpossibleGridIsRefused) {
         bad.resize(size);
         const auto error = thrown_by([&] { rig.integrator.restore(rig.report(), bad); });
         ASSERT_TRUE(error) << size << " bytes were taken";
-        EXPECT_EQ(error->code(), ExitCode::bad_scene);
+        EXPECT_EQ(error->code(), ExitCode::bad_input);
         EXPECT_NE(std::string(error->what()).find(std::to_string(size)), std::string::npos) << error->what();
     }
     // Every cell of a larger grid would be looked up past the end of the table.
@@ -119,7 +119,7 @@ TEST_F(CheckpointState, OfAnotherSizeOrWithAnImpossibleGridIsRefused) {
         const auto error = thrown_by([&] { rig.integrator.restore(rig.report(), bad); });
         ASSERT_TRUE(error) << wrong.dims[0].x << " x " << wrong.dims[0].y << " x " << wrong.dims[0].z << ", "
                            << wrong.entries << ", " << wrong.levels << " levels";
-        EXPECT_EQ(error->code(), ExitCode::bad_scene);
+        EXPECT_EQ(error->code(), ExitCode::bad_input);
     }
     rig.integrator.restore(rig.report(), good);
 }

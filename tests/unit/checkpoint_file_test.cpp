@@ -50,7 +50,7 @@ protected:
     Checkpoint read() const { return read_checkpoint(file_, identity(), pixels); }
 
     /// The error of a file of these bytes, one line that names the file.
-    std::string refused(const std::string& bytes, ExitCode code = ExitCode::bad_scene, std::size_t of_pixels = pixels) {
+    std::string refused(const std::string& bytes, ExitCode code = ExitCode::bad_input, std::size_t of_pixels = pixels) {
         test::write_bytes(file_, bytes);
         const auto error = test::thrown_by([&] { read_checkpoint(file_, identity(), of_pixels); });
         if (!error) return "it was taken";

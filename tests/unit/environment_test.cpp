@@ -57,7 +57,7 @@ TEST(Environment, RefusesPixelsThatAreNoRadiance) {
             Image sky{{3, 2}, std::vector<glm::vec3>(6, glm::vec3(Limits::max()))};
             sky.rgb[5][channel] = bad;
             write_exr(folder / "sky.exr", sky);
-            expect_refused(folder / "sky.exr", ExitCode::bad_scene, {"pixel (2, 1)", "must be finite"});
+            expect_refused(folder / "sky.exr", ExitCode::bad_input, {"pixel (2, 1)", "must be finite"});
         }
     }
 }
@@ -113,25 +113,25 @@ TEST(Environment, RefusesWhatItCannotTake) {
     expect_refused(folder / "missing.exr", ExitCode::no_input, {"no such file"});
     expect_refused(folder.path(), ExitCode::no_input, {});
     test::write_bytes(folder / "empty.hdr", "");
-    expect_refused(folder / "empty.hdr", ExitCode::bad_scene, {"neither"});
+    expect_refused(folder / "empty.hdr", ExitCode::bad_input, {"neither"});
     test::write_bytes(folder / "sky.png", "\x89PNG\r\n");
-    expect_refused(folder / "sky.png", ExitCode::bad_scene, {"neither an OpenEXR nor a Radiance picture"});
+    expect_refused(folder / "sky.png", ExitCode::bad_input, {"neither an OpenEXR nor a Radiance picture"});
     test::write_bytes(folder / "cut.hdr", hdr.substr(0, hdr.size() - 1));
-    expect_refused(folder / "cut.hdr", ExitCode::bad_scene, {"cut short"});
+    expect_refused(folder / "cut.hdr", ExitCode::bad_input, {"cut short"});
     write_exr(folder / "cut.exr", Image{{2, 2}, std::vector<glm::vec3>(4, glm::vec3(1.0f))});
     const std::string bytes = test::read_bytes(folder / "cut.exr");
     test::write_bytes(folder / "cut.exr", bytes.substr(0, bytes.size() - 8));
-    expect_refused(folder / "cut.exr", ExitCode::bad_scene, {});
+    expect_refused(folder / "cut.exr", ExitCode::bad_input, {});
 }
 
 TEST(Environment, HasALimitOfPixels) {
     const test::TemporaryFolder folder;
     test::write_bytes(folder / "large.hdr", "#?RADIANCE\n\n-Y 4096 +X 8192\n");
-    expect_refused(folder / "large.hdr", ExitCode::bad_scene, {"8192x4096", "8388608", "scale it down"});
+    expect_refused(folder / "large.hdr", ExitCode::bad_input, {"8192x4096", "8388608", "scale it down"});
     write_exr(folder / "large.exr", Image{{4097, 2048}, std::vector<glm::vec3>(4097 * 2048, glm::vec3(1.0f))});
-    expect_refused(folder / "large.exr", ExitCode::bad_scene, {"4097x2048", "the limit is 8388608 in all"});
+    expect_refused(folder / "large.exr", ExitCode::bad_input, {"4097x2048", "the limit is 8388608 in all"});
     test::write_bytes(folder / "largest.hdr", "#?RADIANCE\n\n-Y 2048 +X 4096\n");
-    expect_refused(folder / "largest.hdr", ExitCode::bad_scene, {"row 0 is cut short"});
+    expect_refused(folder / "largest.hdr", ExitCode::bad_input, {"row 0 is cut short"});
 }
 
 }  // namespace

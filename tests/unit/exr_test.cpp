@@ -276,18 +276,18 @@ TEST(Exr, RefusesWhatIsNoPicture) {
     expect_refusal(folder / "missing.exr", ExitCode::no_input, "no such file");
     expect_refusal(folder.path(), ExitCode::no_input, "it is a folder");
     test::write_bytes(folder / "empty.exr", "");
-    expect_refusal(folder / "empty.exr", ExitCode::bad_scene, "cannot read");
+    expect_refusal(folder / "empty.exr", ExitCode::bad_input, "cannot read");
     test::write_bytes(folder / "text.exr", "this is no picture, however long its text may be\n");
-    expect_refusal(folder / "text.exr", ExitCode::bad_scene, "cannot read");
+    expect_refusal(folder / "text.exr", ExitCode::bad_input, "cannot read");
     const auto error = test::thrown_by([&] { read_exr_attributes(folder / "text.exr"); });
     ASSERT_TRUE(error);
-    EXPECT_EQ(error->code(), ExitCode::bad_scene);
+    EXPECT_EQ(error->code(), ExitCode::bad_input);
 }
 
 TEST(Exr, NamesAMissingChannel) {
     const test::TemporaryFolder folder;
     write_planes(folder / "a.exr", box(0, 0, 3, 3), box(0, 0, 3, 3), {{"R", Imf::HALF, 1.0f}, {"B", Imf::HALF, 1.0f}});
-    expect_refusal(folder / "a.exr", ExitCode::bad_scene, "no channel G in its first part, but 'B'");
+    expect_refusal(folder / "a.exr", ExitCode::bad_input, "no channel G in its first part, but 'B'");
 }
 
 /// Of whatever it reads as: (0.4, 0.5, 0.6) and white, in these primaries (x, y).
@@ -362,16 +362,16 @@ TEST(Exr, ReadsGreyAndTheOneLayerThatThereIs) {
                   {"b.R", Imf::HALF, 1.0f},
                   {"b.G", Imf::HALF, 1.0f},
                   {"b.B", Imf::HALF, 1.0f}});
-    expect_refusal(folder / "two.exr", ExitCode::bad_scene, "2 layers of R, G and B ('a.', 'b.', ...)");
+    expect_refusal(folder / "two.exr", ExitCode::bad_input, "2 layers of R, G and B ('a.', 'b.', ...)");
     write_planes(folder / "chroma.exr", box(0, 0, 3, 3), box(0, 0, 3, 3),
                  {{"Y", Imf::HALF, 1.0f}, {"RY", Imf::HALF, 1.0f}, {"BY", Imf::HALF, 1.0f}});
-    expect_refusal(folder / "chroma.exr", ExitCode::bad_scene, "no channel R");
+    expect_refusal(folder / "chroma.exr", ExitCode::bad_input, "no channel R");
 }
 
 TEST(Exr, RefusesAHugeWindowBeforeAllocatingIt) {
     const test::TemporaryFolder folder;
     write_planes(folder / "a.exr", box(0, 0, 999'999'999, 999'999'999), box(0, 0, 1, 1), half_rgb);
-    expect_refusal(folder / "a.exr", ExitCode::bad_scene, "1000000000x1000000000");
+    expect_refusal(folder / "a.exr", ExitCode::bad_input, "1000000000x1000000000");
 }
 
 TEST(Exr, RefusesEveryTruncation) {
@@ -383,7 +383,7 @@ TEST(Exr, RefusesEveryTruncation) {
         test::write_bytes(folder / "b.exr", bytes.substr(0, size));
         const auto error = test::thrown_by([&] { read_exr(folder / "b.exr"); });
         ASSERT_TRUE(error) << size << " of " << bytes.size() << " bytes were taken for a picture";
-        EXPECT_EQ(error->code(), ExitCode::bad_scene) << error->what();
+        EXPECT_EQ(error->code(), ExitCode::bad_input) << error->what();
     }
 }
 

@@ -173,7 +173,7 @@ TEST(Animation, WhatIsNotThereIsToldWithWhatIs) {
 /// The one line about an animation that cannot be read.
 std::string refusal(const GltfBuilder& builder) {
     const auto error = test::thrown_by([&] { load_at(builder, "all", 0.5); });
-    if (!error || error->code() != ExitCode::bad_scene) return "no refusal";
+    if (!error || error->code() != ExitCode::bad_input) return "no refusal";
     return error->what();
 }
 

@@ -105,7 +105,7 @@ TEST(HostileFile, ScenesOfOtherProgramsAreToldWhatToExport) {
     const auto refusal = [&](const char* name, const std::string& bytes) {
         test::write_bytes(folder / name, bytes);
         const auto error = test::thrown_by([&] { load_gltf(folder / name); });
-        if (!error || error->code() != ExitCode::bad_scene) return std::string("no refusal");
+        if (!error || error->code() != ExitCode::bad_input) return std::string("no refusal");
         return std::string(error->what());
     };
     for (const auto& [name, bytes, told] :
@@ -168,7 +168,7 @@ TEST(HostileFile, LinksOutOfItsRoot) {
         const auto error = load(uri);
         ASSERT_TRUE(error) << uri << " was read";
         const std::string message = error->what();
-        EXPECT_EQ(error->code(), ExitCode::bad_scene) << message;
+        EXPECT_EQ(error->code(), ExitCode::bad_input) << message;
         for (const std::string& part : {std::string("buffers[0] is absent"), uri + std::string("\": outside of")}) {
             EXPECT_NE(message.find(part), std::string::npos) << part << " not in: " << message;
         }

@@ -489,7 +489,7 @@ TEST(Gltf, ReadsFilesBelowItsFolderAndWithARootElsewhere) {
     for (const char* uri : {"../../far.bin", "far.bin", "../data/near.bin", "near.bin", "parts/../../data/near.bin"}) {
         const auto error = test::thrown_by([&] { triangles(uri); });
         ASSERT_TRUE(error) << uri;
-        EXPECT_EQ(error->code(), ExitCode::bad_scene);
+        EXPECT_EQ(error->code(), ExitCode::bad_input);
         EXPECT_NE(std::string(error->what()).find("--root"), std::string::npos) << error->what();
     }
     EXPECT_TRUE(test::thrown_by([&] { triangles("../../far.bin", above); }));

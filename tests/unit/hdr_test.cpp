@@ -141,7 +141,7 @@ TEST(Hdr, RefusesEveryBadFileAndSaysWhy) {
         const auto error = test::thrown_by([&] { decode(bad.bytes); });
         ASSERT_TRUE(error) << "accepted, though it should tell of " << bad.told;
         const std::string message = error->what();
-        EXPECT_EQ(error->code(), ExitCode::bad_scene) << message;
+        EXPECT_EQ(error->code(), ExitCode::bad_input) << message;
         EXPECT_TRUE(message.starts_with("sky.hdr: ")) << message;
         EXPECT_NE(message.find(bad.told), message.npos) << "'" << bad.told << "' is not in: " << message;
     }

@@ -94,7 +94,7 @@ TEST(Load, StrictRunsAllowNoWarning) {
     EXPECT_FALSE(test::thrown_by([&] { tell_warnings(scene, {.file = "a.gltf"}); }));
     const auto error = test::thrown_by([&] { tell_warnings(scene, {.file = "a.gltf", .strict = true}); });
     ASSERT_TRUE(error);
-    EXPECT_EQ(error->code(), ExitCode::bad_scene);
+    EXPECT_EQ(error->code(), ExitCode::bad_input);
     EXPECT_EQ(std::string(error->what()), "a.gltf: 2 warnings; with --strict there must be none");
 }
 

@@ -54,13 +54,13 @@ NoisyPicture read_picture(const fs::path& file) {
     return picture;
 }
 
-/// Throws Error(bad_scene) where a pixel whose colour is a number has a standard error that is none of 0 or more.
+/// Throws Error(bad_input) where a pixel whose colour is a number has a standard error that is none of 0 or more.
 void require_errors(const fs::path& file, const NoisyPicture& picture) {
     for (std::size_t i = 0; i < picture.standard_error.size(); ++i) {
         const float error = picture.standard_error[i];
         if ((std::isfinite(error) && error >= 0.0f) || !is_finite(picture.mean.rgb[i])) continue;
         const std::uint32_t width = picture.mean.extent.width;
-        throw Error(ExitCode::bad_scene,
+        throw Error(ExitCode::bad_input,
                     fmt::format("{}: StdErr is {} in column {}, row {}; it is a number of 0 or more", file.string(),
                                 error, i % width, i / width));
     }
@@ -111,13 +111,6 @@ void update(const CheckOptions& options) {
     }
     write_file(options.reference, bytes);
     print_result(fmt::format("{} is now {}{}\n", options.reference.string(), options.image.string(), change));
-}
-
-void make_folder(const fs::path& folder) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (!error) return;
-    throw Error(ExitCode::cannot_write, fmt::format("cannot make the folder {}: {}", folder.string(), error.message()));
 }
 
 }  // namespace

@@ -70,16 +70,6 @@ std::vector<std::string> mismatches(const RaceInput& input, const ExrAttributes&
     return lines;
 }
 
-void make_folder(const fs::path& folder) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) {
-        throw Error(ExitCode::cannot_write,
-                    fmt::format("cannot make the folder {}: {}", folder.string(), error.message()));
-    }
-    check_writable(folder / "index.html");
-}
-
 /// A race must not write over the scene, its files or the reference.
 void check_race_outputs(const RaceOptions& options, const RaceInput& input, const RaceSettings& race) {
     std::vector<std::optional<fs::path>> inputs(input.scene.inputs.begin(), input.scene.inputs.end());

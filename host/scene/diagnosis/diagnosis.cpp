@@ -81,10 +81,10 @@ public:
             work_left_ -= work;
             if (shell == left_out || work == 1) continue;
             const double winding = winding_number(scene_, *shell, p);
-            if (winding > 0.75) holder = shell;
+            if (winding > inside_turns) holder = shell;
             turns += winding;
         }
-        return turns > 0.75 ? holder : nullptr;  // on a surface it is 1/2: a lamp that touches glass is not in it
+        return turns > inside_turns ? holder : nullptr;
     }
 
 private:
@@ -148,13 +148,8 @@ private:
 
     void check_solid_glass() {
         const std::vector<Shell> shells = find_shells(scene_, triangles_of(scene_, is_solid_glass));
-        // Ordered by their first triangles, and so by the space that they are in.
-        for (std::size_t first = 0, last; first < shells.size(); first = last) {
-            const auto mesh = mesh_of(scene_, shells[first].triangles.front());
-            for (last = first; last < shells.size(); ++last) {
-                if (mesh_of(scene_, shells[last].triangles.front()) != mesh) break;
-            }
-            const auto here = std::span(shells).subspan(first, last - first);
+        for (const std::span<const Shell> here : by_space(scene_, shells)) {
+            const auto mesh = mesh_of(scene_, here.front().triangles.front());
             SolidGlass glass(scene_, here, mesh);
             for (const Shell& shell : here) check_solid(shell, glass);
             if (!mesh && !glass.empty()) check_lights_inside(glass);

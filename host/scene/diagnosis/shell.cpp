@@ -196,6 +196,18 @@ std::vector<Shell> find_shells(const Scene& scene, std::span<const std::uint32_t
     return shells;
 }
 
+std::vector<std::span<const Shell>> by_space(const Scene& scene, std::span<const Shell> shells) {
+    std::vector<std::span<const Shell>> spaces;
+    for (std::size_t first = 0, last; first < shells.size(); first = last) {
+        const auto mesh = mesh_of(scene, shells[first].triangles.front());
+        for (last = first; last < shells.size(); ++last) {
+            if (mesh_of(scene, shells[last].triangles.front()) != mesh) break;
+        }
+        spaces.push_back(shells.subspan(first, last - first));
+    }
+    return spaces;
+}
+
 std::array<glm::dvec3, 3> corners_of(const Scene& scene, std::uint32_t triangle) {
     const auto& vertex = scene.triangles[triangle].vertex;
     return {scene.positions[vertex[0]], scene.positions[vertex[1]], scene.positions[vertex[2]]};

@@ -30,6 +30,10 @@ struct Shell {
 /// belong to none.
 std::vector<Shell> find_shells(const Scene& scene, std::span<const std::uint32_t> triangles);
 
+/// Shells in the order of their first triangles, parted by the space that they are in: the world's, then that of each
+/// shared mesh.
+std::vector<std::span<const Shell>> by_space(const Scene& scene, std::span<const Shell> shells);
+
 /// The corners of a triangle of the scene, m.
 std::array<glm::dvec3, 3> corners_of(const Scene& scene, std::uint32_t triangle);
 
@@ -40,5 +44,8 @@ double share_of_directions(const std::array<glm::dvec3, 3>& corners, const glm::
 /// How often the shell winds around the point: 1 inside, 0 outside, -1 inside one whose fronts face inwards, 1/2 on a
 /// smooth surface.
 double winding_number(const Scene& scene, const Shell& shell, const glm::dvec3& point);
+
+/// Turns around a point from which on it is inside: what lies on a surface, such as a lamp that touches glass, is not.
+inline constexpr double inside_turns = 0.75;
 
 }  // namespace vkcppm

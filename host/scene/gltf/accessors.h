@@ -25,7 +25,7 @@ namespace vkcppm {
 /// Vectors of N components that several primitives may share.
 template <int N> using SharedVectors = std::shared_ptr<const std::vector<glm::vec<N, double>>>;
 
-/// Throws Error(bad_scene) with accessor, value, limit and file where an accessor cannot be read as asked for.
+/// Throws Error(bad_input) with accessor, value, limit and file where an accessor cannot be read as asked for.
 class GltfAccessors {
 public:
     /// `model` may name a view past the last of the file for accessors that have none. Keeps all three.

@@ -11,7 +11,7 @@
 namespace vkcppm {
 
 /// The camera of a node; none where it has none or, with a warning, one that is flat. zfar and znear cut nothing.
-/// Throws Error(bad_scene) where its angle, its size or its aspect ratio is out of range.
+/// Throws Error(bad_input) where its angle, its size or its aspect ratio is out of range.
 std::optional<Camera> read_camera(const GltfFile& file, const tinygltf::Model& model, const PlacedNode& placed,
                                   Warnings& warnings);
 

@@ -24,7 +24,7 @@ public:
     /// None, with a warning, where its file is not there, lies outside of the file's root, is in a format that only an
     /// extension allows (KTX2, DDS) or is unreadable: the factor alone is a picture that still says something.
     /// glossiness: the factor of that in alpha, of which the image is to hold the roughness, 1 less it, in green.
-    /// Throws Error(bad_scene) where the image has no source or two or is too large, alone or with the others.
+    /// Throws Error(bad_input) where the image has no source or two or is too large, alone or with the others.
     std::optional<std::uint32_t> index(std::size_t image, std::optional<double> glossiness = {});
 
     /// Names images[i], which is looked at where that at `place`, of index(), turns out to be broken.
@@ -36,7 +36,7 @@ public:
         std::vector<std::optional<std::uint32_t>> at;
     };
 
-    /// Decodes all, each once, on all cores. Throws Error(bad_scene) where memory is too little for them.
+    /// Decodes all, each once, on all cores. Throws Error(bad_input) where memory is too little for them.
     Taken take_images();
 
     /// FNV-1a of the file's hash and of each external image's bytes.

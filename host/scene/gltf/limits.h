@@ -40,7 +40,7 @@ constexpr std::size_t max_texels(std::size_t bytes) {
     return std::clamp(256 * bytes, std::size_t(1) << 27, (std::size_t(1) << 32) - 1);
 }
 
-/// Throws Error(bad_scene) where `total` is above `limit`, e.g. "the number of triangles is 9; the limit is 8".
+/// Throws Error(bad_input) where `total` is above `limit`, e.g. "the number of triangles is 9; the limit is 8".
 inline void check_total(std::size_t total, std::size_t limit, std::string_view what, std::string_view file) {
     if (total <= limit) return;
     bad_scene(file, fmt::format("the number of {}", what), fmt::to_string(total),
@@ -54,7 +54,7 @@ inline void check_total(std::size_t total, const Expansion& limit, std::string_v
               fmt::format("the limit is {} for its {} bytes", limit.of(file.bytes), file.bytes));
 }
 
-/// Throws Error(bad_scene) where `total` things of so many bytes each are more than memory has left.
+/// Throws Error(bad_input) where `total` things of so many bytes each are more than memory has left.
 inline void check_room(std::size_t total, std::size_t bytes_each, std::string_view what, std::string_view file) {
     const std::size_t needed = total * bytes_each, there = available_memory();
     if (needed <= there) return;

@@ -13,7 +13,7 @@ namespace vkcppm {
 
 /// All materials of the file, in its order. Textures are read where is_used[i], and only those that change something:
 /// what multiplies a factor of zero is left out. Images that they need are decoded by `images`.
-/// Throws Error(bad_scene) with object, value, limit and file where a number cannot be rendered; a factor that is
+/// Throws Error(bad_input) with object, value, limit and file where a number cannot be rendered; a factor that is
 /// merely outside of its range is clamped with a warning.
 std::vector<Material> read_materials(const GltfFile& file, const std::vector<bool>& is_used, GltfImages& images,
                                      Warnings& warnings);

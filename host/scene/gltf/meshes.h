@@ -20,7 +20,7 @@ std::vector<bool> used_materials(const GltfFile& file, const tinygltf::Model& mo
 /// Adds the triangles of all nodes' meshes, instances included, to `scene`, or the meshes that are shared and their
 /// instances. The scene's materials are read already; the material of those that name none comes after them. Vertex
 /// attributes that no material reads are left out. Morph targets stand at their weights, skins where their joints are.
-/// Throws Error(bad_scene) where an accessor is out of range or not finite, or the totals are above limits.h.
+/// Throws Error(bad_input) where an accessor is out of range or not finite, or the totals are above limits.h.
 void add_meshes(const GltfFile& file, const tinygltf::Model& model, GltfAccessors& accessors, GltfSkins& skins,
                 const std::vector<PlacedNode>& nodes, Sharing sharing, Scene& scene, Warnings& warnings);
 

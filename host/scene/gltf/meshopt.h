@@ -15,7 +15,7 @@ namespace vkcppm {
 const char* meshopt_extension(const nlohmann::json& object);
 
 /// [byteStride * count] bytes that `compressed` expands to. `view` is a bufferView (checked by the schema) with such an
-/// extension, named `view_name` in messages. Throws Error(bad_scene) where the sizes of the two disagree, a number does
+/// extension, named `view_name` in messages. Throws Error(bad_input) where the sizes of the two disagree, a number does
 /// not suit the mode or the filter, or the data is broken.
 std::vector<std::uint8_t> decode_meshopt(const nlohmann::json& view, std::span<const std::uint8_t> compressed,
                                          const std::string& view_name, const std::string& file);

@@ -39,7 +39,7 @@ bool has_triangles(const tinygltf::Primitive& source);
 /// How many triangles, degenerate ones included. Reads no accessor.
 std::size_t triangle_count(const tinygltf::Primitive& source, const GltfAccessors& accessors);
 
-/// Reads primitives, each once. Throws Error(bad_scene) with object, value, limit and file.
+/// Reads primitives, each once. Throws Error(bad_input) with object, value, limit and file.
 class PrimitiveReader {
 public:
     /// Keeps all five.

@@ -21,7 +21,7 @@ std::filesystem::path default_root(const std::filesystem::path& file);
 
 /// The bytes of a data URI, or the first `limit` of the file that a relative URI means from the folder of `file` on,
 /// which go into `hash` as well; nothing, and why, where there is no such file or it lies outside of `root`, a
-/// canonical folder, be it by a link. `object` has the URI, for messages. Throws Error(bad_scene) where a data URI is
+/// canonical folder, be it by a link. `object` has the URI, for messages. Throws Error(bad_input) where a data URI is
 /// malformed.
 std::optional<Bytes> read_uri(const std::string& uri, std::size_t limit, const std::string& object,
                               const std::string& file, const std::filesystem::path& root, std::uint64_t& hash,

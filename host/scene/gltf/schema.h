@@ -11,11 +11,11 @@ namespace vkcppm {
 
 /// Checks `document` against the tables of the glTF 2.0 schema for what the loader reads, supported extensions
 /// included: a member has its type, lies in its hard limits, and an index names an element that exists. Numbers
-/// (not indices or counts) are rewritten as floating point. Throws Error(bad_scene) with object, value, limit, file.
+/// (not indices or counts) are rewritten as floating point. Throws Error(bad_input) with object, value, limit, file.
 void check_gltf_schema(nlohmann::json& document, std::string_view file);
 
 /// The names in the root array `member` ("extensionsUsed" or "extensionsRequired") that the loader does not support, as
-/// JSON strings. Throws Error(bad_scene) where the member is not an array of strings.
+/// JSON strings. Throws Error(bad_input) where the member is not an array of strings.
 std::vector<std::string> unsupported_extensions(const nlohmann::json& document, std::string_view member,
                                                 std::string_view file);
 

@@ -23,7 +23,7 @@ public:
     GltfSkins(const GltfFile& file, GltfAccessors& accessors, const std::vector<PlacedNode>& nodes, Warnings& warnings);
 
     /// The joints of the skin of a node with a mesh (glTF 2.0, section 3.7.3); null where it has none or, with a
-    /// warning, one with a joint outside of the scene. Throws Error(bad_scene) where the matrices cannot be read.
+    /// warning, one with a joint outside of the scene. Throws Error(bad_input) where the matrices cannot be read.
     const JointMatrices* joints(int node);
 
 private:

@@ -44,7 +44,7 @@ inline glm::vec3 clamped(const glm::dvec3& value, double low, double high, const
             clamped(value.z, low, high, object, warnings)};
 }
 
-/// color * strength a channel: both must be non-negative and the product a finite float, else Error(bad_scene); color
+/// color * strength a channel: both must be non-negative and the product a finite float, else Error(bad_input); color
 /// is at most 1.
 inline glm::vec3 emitted(const glm::dvec3& color, double strength, const std::string& color_name,
                          const std::string& strength_name, const std::string& file, Warnings& warnings) {

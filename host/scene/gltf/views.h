@@ -13,7 +13,7 @@ namespace vkcppm {
 
 class GltfViews {
 public:
-    /// Throws Error(bad_scene) where a view, or its compressed data, is outside of its buffer. Keeps `file`.
+    /// Throws Error(bad_input) where a view, or its compressed data, is outside of its buffer. Keeps `file`.
     explicit GltfViews(const GltfFile& file);
 
     std::size_t count() const { return views_.size(); }
@@ -24,7 +24,7 @@ public:
     /// byteStride, 0 where the file states none.
     std::size_t stride(std::size_t view) const { return views_[view].stride; }
 
-    /// [size] the bytes of a view, decompressed once (meshopt_extension). Throws Error(bad_scene) where the
+    /// [size] the bytes of a view, decompressed once (meshopt_extension). Throws Error(bad_input) where the
     /// buffer is absent or its data is broken.
     std::span<const std::uint8_t> bytes(std::size_t view);
 

@@ -26,7 +26,7 @@ constexpr std::size_t most_flattened_triangles = 4096;  // more triangles find n
 /// What is wrong with the line of an error about `file`.
 std::string bad_line(const Error& error, const std::filesystem::path& file) {
     const std::string line = error.what();
-    if (error.code() != ExitCode::bad_scene) return "exit code " + std::to_string(int(error.code())) + ": " + line;
+    if (error.code() != ExitCode::bad_input) return "exit code " + std::to_string(int(error.code())) + ": " + line;
     if (!line.starts_with(file.string() + ": ")) return "it does not begin with the file: " + line;
     if (line.size() > longest_line + file.string().size()) return "it is long: " + line;
     if (std::ranges::any_of(line, [](unsigned char c) { return c == '\n'; })) return "it is no line: " + line;

@@ -11,7 +11,7 @@ void expect_bad_scene(const std::string& bytes, const std::vector<std::string>& 
     const auto error = thrown_by([&] { load_gltf(file); });
     ASSERT_TRUE(error) << "the file was accepted";
     const std::string message = error->what();
-    EXPECT_EQ(error->code(), ExitCode::bad_scene) << message;
+    EXPECT_EQ(error->code(), ExitCode::bad_input) << message;
     EXPECT_TRUE(message.starts_with(file.string() + ": ")) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     for (const std::string& part : parts) {

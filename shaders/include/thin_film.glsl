@@ -2,8 +2,8 @@
 // Light that goes to and fro in the film interferes with what its face reflects: the reflectance is a cosine series in
 // the difference of the paths (Airy), whose terms are averaged over the spectrum of each channel (Belcour and Barla
 // 2017, "A Practical Extension to Microfacet Theory for the Modeling of Varying Iridescence").
-#ifndef FILM_GLSL
-#define FILM_GLSL
+#ifndef THIN_FILM_GLSL
+#define THIN_FILM_GLSL
 
 #include "include/kernel.glsl"
 #include "include/fresnel.glsl"
@@ -15,7 +15,7 @@ const int FILM_ORDERS = 4;
 // How much of a term is left in each channel: the Fourier transform of the channel's sensitivity over wave numbers, of
 // four Gaussians, those of Belcour and Barla for CIE XYZ, in sRGB and each channel over its sum, so that white stays
 // white. difference: of the paths, micrometres.
-vec3 film_sensitivity(float difference) {
+vec3 thin_film_sensitivity(float difference) {
     const mat4x3 share = mat4x3(2.275931, -0.865289, 0.051766,   // X about 0.595 micrometres
                                 -1.275526, 1.978687, -0.224252,  // Y
                                 -0.414057, 0.043870, 1.163078,   // Z
@@ -29,7 +29,7 @@ vec3 film_sensitivity(float difference) {
 
 // cosine: outside, where the index is 1. index, thickness (micrometres): of the film. r0: reflectance of the bare base
 // at normal incidence, which stands for its index. Faces reflect by Schlick 1994.
-vec3 film_reflectance(float cosine, float index, float thickness, vec3 r0) {
+vec3 thin_film_reflectance(float cosine, float index, float thickness, vec3 r0) {
     float beyond = sqrt(1.0 - (1.0 - cosine * cosine) / (index * index));
     float root = (index - 1.0) / (index + 1.0);
     float outer0 = root * root;
@@ -51,7 +51,7 @@ vec3 film_reflectance(float cosine, float index, float thickness, vec3 r0) {
     float difference = 2.0 * index * thickness * beyond;
     for (int order = 1; order <= FILM_ORDERS; ++order) {
         term *= ratio;
-        sum += term * film_sensitivity(float(order) * difference);
+        sum += term * thin_film_sensitivity(float(order) * difference);
     }
     // Channels are no spectra: some colours lie outside.
     return clamp(sum, vec3(0.0), vec3(1.0));
