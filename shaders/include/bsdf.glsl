@@ -23,6 +23,7 @@
 //   float name_width(bsdf)                    alpha of its facets; 0: a delta; WIDE: it has none, and eye paths do not
 //                                             follow it; light paths and the path tracer do
 //   float name_stretch(bsdf)                  how much wider they are along the surface's tangent; 1: alike all around
+//   float name_peak(bsdf)                     of a rough lobe seen along its normal the greatest density, 1/sr
 //   vec3  name_normal(surface)                about which it lies
 //   float name_weight(bsdf, surface, wo)      about what it sends on of light along wo, the largest channel: lobes are
 //                                             chosen in proportion
@@ -204,12 +205,11 @@ Bsdf clear_boundary() {
     return b;
 }
 
-// The share of a lobe of width alpha that an eye path leaves to photons when it chooses between gathering and going on:
-// that of the weight below at the lobe's peak, seen along the normal, where its density is 1 / (4 pi alpha^2).
-float gathered_share(float alpha) {
-    float x = 4.0 * float(params.knn) * alpha * alpha;
-    return x / (1.0 + x);
-}
+// The share of a rough lobe that an eye path leaves to photons when it chooses between gathering and going on, from 1
+// less the weight below at the lobe's peak. That itself is best where light comes from about the peak alone; where it
+// is the same from everywhere photons from beside it would be rare and count for many. The power is a measured
+// middle: tests/bench/results/transport.md.
+float gathered_share(float peak) { return pow(1.0 + PI * peak / float(params.knn), -0.7); }
 
 // A rough lobe is sampled in two ways: eye paths follow it, with its own density, and gather photons on it: k of them,
 // which come from anywhere, as cos / pi stands for. Both are weighed by the balance heuristic (Veach and Guibas 1995),
@@ -316,7 +316,8 @@ LobeWeights share_with_photons(Bsdf b, inout LobeWeights lobes) {
     {                                                                                                   \
         float width = present ? name##_width(b) : 0.0;                                                  \
         bool both = is_rough(width) && width != WIDE;                                                   \
-        float share = width == WIDE ? lobes.of[number] : both ? lobes.of[number] * gathered_share(width) : 0.0; \
+        float left = width == WIDE ? 1.0 : both ? gathered_share(name##_peak(b)) : 0.0;                 \
+        float share = lobes.of[number] * left;                                                          \
         rough.of[number] = both ? lobes.of[number] - share : 0.0;                                       \
         if (number != LOBE_DIFFUSE) {                                                                   \
             shares += share;                                                                            \

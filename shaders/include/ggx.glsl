@@ -96,7 +96,10 @@ float reflection_pdf(Facets f, vec3 wo, vec3 h) {
     return ggx(f, h) * smith_g1(f, wo, cosine) / (4.0 * cosine);
 }
 
-// The same of refraction at h; eta = index on the side of wo / index beyond, wi_h = |wi . h|: Walter et al. 2007,
+// The greatest it is where wo is the normal.
+float reflection_peak_of(float alpha) { return 1.0 / (4.0 * PI * alpha * alpha); }
+
+// Density of refraction at h; eta = index on the side of wo / index beyond, wi_h = |wi . h|: Walter et al. 2007,
 // Eq. (17).
 float refraction_pdf(Facets f, vec3 wo, float wo_n, vec3 h, float eta, float wo_h, float wi_h) {
     float d = eta * wo_h - wi_h;

@@ -10,6 +10,8 @@ float clearcoat_width(Bsdf b) { return b.clearcoat_alpha; }
 
 float clearcoat_stretch(Bsdf b) { return 1.0; }
 
+float clearcoat_peak(Bsdf b) { return reflection_peak_of(b.clearcoat_alpha); }
+
 Facets clearcoat_facets(Bsdf b, Surface surface) {
     return facets_of(b.clearcoat_alpha, surface.clearcoat_normal, 1.0, surface.tangent);
 }

@@ -8,6 +8,8 @@ float diffuse_width(Bsdf b) { return WIDE; }
 
 float diffuse_stretch(Bsdf b) { return 1.0; }
 
+float diffuse_peak(Bsdf b) { return 0.0; }  // wide
+
 vec3 diffuse_normal(Surface surface) { return surface.normal; }
 
 // Coats as seen from above: h is far from n at grazing angles.

@@ -9,6 +9,8 @@ float reflection_width(Bsdf b) { return b.alpha; }
 
 float reflection_stretch(Bsdf b) { return b.stretch; }
 
+float reflection_peak(Bsdf b) { return reflection_peak_of(b.alpha); }
+
 vec3 reflection_normal(Surface surface) { return surface.normal; }
 
 float reflection_weight(Bsdf b, Surface surface, vec3 wo) {

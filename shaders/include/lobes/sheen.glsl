@@ -8,6 +8,8 @@ float sheen_width(Bsdf b) { return WIDE; }
 
 float sheen_stretch(Bsdf b) { return 1.0; }
 
+float sheen_peak(Bsdf b) { return 0.0; }  // wide
+
 vec3 sheen_normal(Surface surface) { return surface.normal; }
 
 // The clearcoat as seen from above: h is far from n at grazing angles.

@@ -9,6 +9,12 @@ float transmission_width(Bsdf b) { return b.alpha; }
 
 float transmission_stretch(Bsdf b) { return b.stretch; }
 
+// A facet that turns bends what it refracts by less than what it mirrors.
+float transmission_peak(Bsdf b) {
+    float bend = 1.0 - b.eta;
+    return reflection_peak_of(b.alpha) * (b.thin ? 1.0 : 4.0 / max(1e-6, bend * bend));
+}
+
 vec3 transmission_normal(Surface surface) { return surface.normal; }
 
 // True of a thin wall that lets light go straight on, as if it met nothing (include/direct.glsl).
