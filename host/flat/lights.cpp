@@ -104,8 +104,8 @@ void add_punctual_lights(const Scene& scene, const FlatScene& flat, std::vector<
 /// better than a choice.
 std::uint32_t candidates(std::size_t lights) { return std::uint32_t(std::clamp<std::size_t>(lights / 2, 1, 4)); }
 
-/// Points of the lamps of a tree of which a path asks for one.
-constexpr std::uint32_t candidates_of_tree = 2;
+/// Likewise of the lamps of a tree, and of an environment: about half of its points are below a surface's horizon.
+constexpr std::uint32_t candidates_of_tree = 2, candidates_of_environment = 4;
 
 /// Adds an alias table of those lights; returns their power.
 double add_asked(const std::vector<WeighedLight>& lights, std::span<const std::uint32_t> members, FlatScene& flat) {
@@ -119,10 +119,10 @@ double add_asked(const std::vector<WeighedLight>& lights, std::span<const std::u
 }
 
 /// Adds the group of those lights, where there are any, as one lamp; returns its power.
-double add_group(const std::vector<WeighedLight>& lights, const std::vector<std::uint32_t>& members, FlatScene& flat) {
+double add_group(const std::vector<WeighedLight>& lights, const std::vector<std::uint32_t>& members,
+                 std::uint32_t candidates, FlatScene& flat) {
     if (members.empty()) return 0.0;
-    flat.asked.push_back(
-        {std::uint32_t(flat.asked_lights.size()), std::uint32_t(members.size()), candidates(members.size()), 0});
+    flat.asked.push_back({std::uint32_t(flat.asked_lights.size()), std::uint32_t(members.size()), candidates, 0});
     return add_asked(lights, members, flat);
 }
 
@@ -201,7 +201,7 @@ Lamp lamp_of(const std::vector<WeighedLight>& lights, std::span<const std::uint3
 double add_local_lights(const Scene& scene, const std::vector<WeighedLight>& lights,
                         const std::vector<std::uint32_t>& local, FlatScene& flat) {
     const std::vector<std::span<const std::uint32_t>> members = lamps_of(scene, flat, lights, local);
-    if (members.size() < 2) return add_group(lights, local, flat);
+    if (members.size() < 2) return add_group(lights, local, candidates(local.size()), flat);
     std::vector<Lamp> lamps;
     double power = 0.0;
     const auto first = std::uint32_t(flat.asked_lights.size());
@@ -249,8 +249,8 @@ void add_lights(const Scene& scene, FlatScene& flat) {
         (kind == LIGHT_DIRECTIONAL ? directional : kind == LIGHT_ENVIRONMENT ? environment : local).push_back(i);
     }
     flat.local_power = add_local_lights(scene, lights, local, flat);
-    add_group(lights, directional, flat);
-    flat.environment_power = add_group(lights, environment, flat);
+    add_group(lights, directional, candidates(directional.size()), flat);
+    flat.environment_power = add_group(lights, environment, candidates_of_environment, flat);
 }
 
 }  // namespace vkcppm
