@@ -221,8 +221,8 @@ std::vector<Touching> touching_faces(std::span<const Corners> corners, std::span
 bool part_touching_faces(std::span<Corners> corners, std::span<const FaceTraits> faces, float least_error) {
     const auto error = [&](std::uint32_t i) { return std::max(least_error, position_error(corners[i])); };
     std::unordered_map<std::uint32_t, float> shifts;  // towards the front
-    const auto move = [&](std::uint32_t i, std::uint32_t other, float side) {
-        const float gap = 2.0f * (error(i) + error(other));
+    const auto gap_of = [&](const Touching& pair) { return 2.0f * (error(pair.movable) + error(pair.other)); };
+    const auto move = [&](std::uint32_t i, float gap, float side) {
         float& shift = shifts[i];
         if (gap > std::abs(shift)) shift = side * gap;
     };
@@ -235,15 +235,23 @@ bool part_touching_faces(std::span<Corners> corners, std::span<const FaceTraits>
             for (auto twin = first; twin != same.end() && twin->key == back; ++twin) {
                 const FaceTraits& other = faces[twin->index];
                 const bool alike = other.material == faces[i].material && !faces[i].emits;
-                if (!other.is_solid && !alike) move(i, twin->index, 1.0f);
+                if (!other.is_solid && !alike) move(i, gap_of({i, twin->index}), 1.0f);
             }
         }
     });
+    // Solids after all else: what a solid touches may itself have gone to its front, towards the solid.
+    const std::vector<Touching> touching = touching_faces(corners, faces);
+    for (const Touching& pair : touching) {
+        if (!faces[pair.movable].is_solid) move(pair.movable, gap_of(pair), 1.0f);
+    }
     bool solids_touch = false;
-    for (const Touching& pair : touching_faces(corners, faces)) {
-        const bool is_solid = faces[pair.movable].is_solid, both = is_solid && faces[pair.other].is_solid;
+    for (const Touching& pair : touching) {
+        if (!faces[pair.movable].is_solid) continue;
+        const bool both = faces[pair.other].is_solid;
         solids_touch = solids_touch || both;
-        move(pair.movable, pair.other, is_solid && !both ? -1.0f : 1.0f);
+        const auto moved = shifts.find(pair.other);
+        const float nearer = both || moved == shifts.end() ? 0.0f : moved->second;
+        move(pair.movable, gap_of(pair) + nearer, both ? 1.0f : -1.0f);
     }
     for (const auto& [i, shift] : shifts) {
         const glm::vec3 offset = glm::vec3(unit_normal(corners[i]) * double(shift));

@@ -28,13 +28,13 @@ float position_error(const Corners& corners);
 /// corners and the same front one, the first that emits or else the first. O(n log n).
 std::vector<std::uint32_t> distinct_triangles(std::span<const Corners> corners, std::span<const FaceTraits> faces);
 
-/// Moves apart what touches, by four times the rounding error: a face of solid glass that lies front to front on
-/// another face, wholly or in part, goes into its solid, so that there is a thin gap of air as between any two bodies;
-/// on a face of another solid it goes out of its own, so that the two overlap and nothing is between them, as between a
-/// liquid and its glass; a lamp in the plane of what it lies on goes to its front, and so do the two sides of an opaque
-/// sheet, triangles with the same corners that differ. least_error: of a point on any of them, where the corners are a
-/// mesh's whose instances are known less precisely than it is. Returns whether solids touch. O(n log n) where few lie
-/// on many.
+/// Moves apart what touches, by four times the rounding error: a lamp in the plane of what it lies on goes to its
+/// front, and so do the two sides of an opaque sheet, triangles with the same corners that differ; a face of solid
+/// glass that lies front to front on another face, wholly or in part, goes into its solid, so that there is a thin
+/// gap of air as between any two bodies; on a face of another solid it goes out of its own, so that the two overlap
+/// and nothing is between them, as between a liquid and its glass. least_error: of a point on any of them, where the
+/// corners are a mesh's whose instances are known less precisely than it is. Returns whether solids touch. O(n log n)
+/// where few lie on many.
 bool part_touching_faces(std::span<Corners> corners, std::span<const FaceTraits> faces, float least_error = 0.0f);
 
 }  // namespace vkcppm

@@ -82,6 +82,22 @@ TEST(Coincidence, GlassGivesWayToWhatItTouches) {
     EXPECT_EQ(shifts({floor, beside}, {diffuse, glass})[1], 0.0f) << "they share no more than an edge";
 }
 
+// Both would go the same way, as far: they would be in one place again.
+TEST(Coincidence, GlassGivesWayToWhatItselfGoesToItsFront) {
+    const Corners ceiling = in_plane(0.125f, 1.0f, false), up = in_plane(0.125f, 0.5f, true),
+                  down = in_plane(0.125f, 0.5f, false);
+    const auto gap = [](const std::vector<Corners>& corners, const std::vector<FaceTraits>& faces) {
+        std::vector<Corners> moved = corners;
+        part_touching_faces(moved, faces);
+        return (moved[0][0].y - moved[1][0].y) / position_error(corners[0]);
+    };
+    const auto is_thin = [](float errors) { return errors > 2.0f && errors < 8.0f; };
+    EXPECT_PRED1(is_thin, gap({down, up}, {lamp, glass}));
+    EXPECT_PRED1(is_thin, gap({down, up, ceiling}, {lamp, glass, diffuse})) << "on a ceiling";
+    EXPECT_PRED1(is_thin, gap({down, up, up}, {diffuse, glass, other})) << "on a side of a sheet";
+    EXPECT_PRED1(is_thin, gap({up, up}, {lamp, glass})) << "a lamp that shines away from the glass goes alone";
+}
+
 TEST(Coincidence, LampsAndSidesOfSheetsGoToTheirFronts) {
     const Corners panel = in_plane(0.125f, 1.0f, true), small = in_plane(0.125f, 0.5f, true);
     const auto on_panel = shifts({panel, small}, {diffuse, lamp});
