@@ -25,6 +25,8 @@
 namespace vkcppm {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 /// The rule by which an eye path gathers photons on a surface or goes on from it.
 constexpr const char* gathering_rule =
     R"(Eye paths gather photons on diffuse lobes and follow lobes without roughness. A rough lobe is both
@@ -36,8 +38,6 @@ weighed against meeting it by the same heuristic; photons bring it next to lamps
 --direct gathered. What of a punctual light comes by way of mirrors or other smooth glass is brought by
 photons alone.
 )";
-
-using Json = nlohmann::ordered_json;
 
 std::vector<std::size_t> triangles_by_material(const Scene& scene) {
     std::vector<std::size_t> counts(scene.materials.size());

@@ -102,7 +102,7 @@ void add_punctual_lights(const Scene& scene, const FlatScene& flat, std::vector<
 /// Points of lights of which a path asks for one, for so many lights of a group without a tree:
 /// tests/bench/results/transport.md. A square lamp is two triangles, and of one lamp the next point of the sequence is
 /// better than a choice.
-std::uint32_t candidates(std::size_t lights) { return std::uint32_t(std::clamp<std::size_t>(lights / 2, 1, 4)); }
+std::uint32_t candidates_of(std::size_t lights) { return std::uint32_t(std::clamp<std::size_t>(lights / 2, 1, 4)); }
 
 /// Likewise of the lamps of a tree, and of an environment: about half of its points are below a surface's horizon.
 constexpr std::uint32_t candidates_of_tree = 2, candidates_of_environment = 4;
@@ -201,7 +201,7 @@ Lamp lamp_of(const std::vector<WeighedLight>& lights, std::span<const std::uint3
 double add_local_lights(const Scene& scene, const std::vector<WeighedLight>& lights,
                         const std::vector<std::uint32_t>& local, FlatScene& flat) {
     const std::vector<std::span<const std::uint32_t>> members = lamps_of(scene, flat, lights, local);
-    if (members.size() < 2) return add_group(lights, local, candidates(local.size()), flat);
+    if (members.size() < 2) return add_group(lights, local, candidates_of(local.size()), flat);
     std::vector<Lamp> lamps;
     double power = 0.0;
     const auto first = std::uint32_t(flat.asked_lights.size());
@@ -249,7 +249,7 @@ void add_lights(const Scene& scene, FlatScene& flat) {
         (kind == LIGHT_DIRECTIONAL ? directional : kind == LIGHT_ENVIRONMENT ? environment : local).push_back(i);
     }
     flat.local_power = add_local_lights(scene, lights, local, flat);
-    add_group(lights, directional, candidates(directional.size()), flat);
+    add_group(lights, directional, candidates_of(directional.size()), flat);
     flat.environment_power = add_group(lights, environment, candidates_of_environment, flat);
 }
 

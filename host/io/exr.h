@@ -44,7 +44,7 @@ inline constexpr std::uint64_t most_exr_pixels = std::uint64_t(1) << 27;
 /// Reads R, G and B, float or half, scan lines or tiles; without them those of the one layer that has some, or of
 /// Blender's picture (ViewLayer.Combined.R), or Y for grey. Where the file states other primaries than Rec. 709 has, it
 /// is converted to these. The picture is the display window; what the data window does not cover is black. Throws
-/// Error: no_input where the file is missing, bad_scene where it is not such a picture or has more than `most_pixels`
+/// Error: no_input where the file is missing, bad_input where it is not such a picture or has more than `most_pixels`
 /// pixels.
 Image read_exr(const std::filesystem::path& file, std::uint64_t most_pixels = most_exr_pixels);
 

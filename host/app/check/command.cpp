@@ -67,7 +67,7 @@ void require_errors(const fs::path& file, const NoisyPicture& picture) {
 }
 
 /// The settings, with the usual level where there are no bounds. Throws Error where noise is to explain the difference
-/// and a picture does not know its own: usage without errors, bad_scene where they are none.
+/// and a picture does not know its own: usage without errors, bad_input where they are none.
 CheckSettings resolve(const CheckOptions& options, const NoisyPicture& image, const NoisyPicture& reference) {
     CheckSettings settings = options.settings;
     if (!settings.level && settings.bounds.empty() && !settings.max_pixels) settings.level = usual_level;

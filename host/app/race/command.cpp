@@ -241,7 +241,10 @@ void execute(const RaceOptions& options) {
                                                     options.resume->string()));
     }
     make_folder(options.folder);
-    if (options.checkpoint) make_folder(options.folder / "states");
+    if (options.checkpoint) {
+        make_folder(options.folder / "states");
+        check_writable(options.folder / "states" / "a.ckpt");
+    }
     check_race_outputs(options, input, race);
     Device device(options.device);
     const PipelineCache cache(device, options.device.cache);

@@ -34,7 +34,7 @@ struct GltfFile {
 
 /// Reads the file, tells .gltf from .glb by its first bytes, and resolves every buffer: data URI, file below `root` (by
 /// default: default_root()), or the binary chunk. What no mesh needs, such as an animation's data, may be absent.
-/// Throws Error: no_input where the file or the root is missing or unreadable, else bad_scene.
+/// Throws Error: no_input where the file or the root is missing or unreadable, else bad_input.
 GltfFile read_gltf_file(const std::filesystem::path& path,
                         const std::optional<std::filesystem::path>& root = std::nullopt);
 

@@ -25,7 +25,7 @@ struct GltfOptions {
 
 /// Loads the default scene of a .gltf or .glb file (or its first scene; or all root nodes where it has no scene).
 /// Throws Error: no_input where the file is missing or unreadable, usage where it has no such animation, variant or
-/// material, bad_scene where it is malformed or requires what is not there, each with object, value, limit and file.
+/// material, bad_input where it is malformed or requires what is not there, each with object, value, limit and file.
 /// What is merely odd becomes a line in Scene::warnings.
 Scene load_gltf(const std::filesystem::path& file, const GltfOptions& options = {});
 
